@@ -54,7 +54,7 @@ class LoadSeparation(NamedTuple):
     """The largest relative error of the conductance that the assumptions of the model cause; NaN where not asked for.
     """
     tangential_error: float = math.nan
-    """That of the stiffness of contacts that stick; NaN likewise."""
+    """The largest relative error of the stiffness of contacts that stick; NaN where not asked for."""
     avalanche_count: float = math.nan
     """Number of separations at which contacts were made or lost; NaN without pairwise interaction and adhesion."""
     avalanche_size_max: float = math.nan

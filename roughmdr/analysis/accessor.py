@@ -118,8 +118,8 @@ class Analysis:
         xarray.Dataset
             Linear between the two steps around the value (pressure and contact fraction from force, contact area and
             nominal_area where the result does not hold them); NaN where it is never reached. Beside each ``NAME`` its
-            ``NAME_interpolation_error``, which holds in 97 % of cases: by how it bends and jumps from step to step; of
-            curves that only jump, such as contact_count, or of fewer than four steps, the way to the farther of both.
+            ``NAME_interpolation_error``, which holds in 97 % of cases: from the bends and jumps of the steps around; of
+            curves that only jump, such as contact_count, or of fewer than four steps, the difference to the farther.
 
         Raises
         ------

@@ -50,11 +50,11 @@ def _first(y: Floats, value: float, before: Ints, usable: NDArray[np.bool_]) -> 
 def interpolate(
     curve: Floats, reached: Floats, path: Floats, brackets: Floats, *, legs: Legs, in_jumps: bool
 ) -> tuple[Floats, Floats]:
-    """Return curves at brackets [..., value, part] of those that are ``reached``, and how far that may be off.
+    """Return curves at brackets [..., value, part] of curves that are ``reached``, and how far they may be off.
 
-    Curves and the ``path``, the controlled quantity, are [..., step]; the returned arrays [..., value]. At a given
-    value of the one, the other is off as its difference to the line of the bracket, curve over reached, is. Of a curve
-    that changes ``in_jumps`` only, and where too few steps are known, it is the difference to the farther step.
+    Curves and the ``path``, the controlled quantity, are [..., step]; the returned arrays [..., value]. A bracket gives
+    a line, the curve over what is reached. The error is how far the curve less that line may be off between the steps;
+    of a curve that changes ``in_jumps`` only, and where too few steps are known, the difference to the farther step.
     """
     known = ~np.isnan(brackets[..., FRACTION])
     lower, upper = (np.where(known, brackets[..., part], 0.0).astype(np.int64) for part in (LOWER, UPPER))

@@ -9,6 +9,7 @@ from roughmdr.errors import StoreError
 from roughmdr.result.layout import OVER_AREA
 from roughmdr.schema.wording import short_repr, suggestion
 from roughmdr.variables import (
+    BRANCHES,
     CURVE_VARIABLES,
     LAW_VARIABLES,
     REFERENCE_VARIABLES,
@@ -19,7 +20,6 @@ from roughmdr.variables import (
 if TYPE_CHECKING:
     import xarray as xr
 
-BRANCHES = ("loading", "unloading")
 PER_AREA = {
     f"{of}{OVER_AREA[total]}": f"{of}{total}" for of in ("", "reference_") for total in ("force", "contact_area")
 }

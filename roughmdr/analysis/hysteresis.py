@@ -5,9 +5,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from roughmdr.analysis.curves import BRANCHES, Legs, alone, check_result, control_of, curve, separation_of
+from roughmdr.analysis.curves import Legs, alone, check_result, control_of, curve, separation_of
 from roughmdr.numerics.arguments import Floats
-from roughmdr.variables import LATERAL
+from roughmdr.variables import BRANCHES, LATERAL
 
 if TYPE_CHECKING:
     import xarray as xr

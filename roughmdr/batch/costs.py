@@ -21,7 +21,7 @@ _RUN, _DRAW = 1.5e-4, 2e-7  # to begin a run; to draw and sort an asperity
 _STRATIFY = 8e-4  # to begin stratified draws
 _VISIT, _VISIT_PROFILE, _VISIT_DUGDALE = 5e-9, 4e-8, 8e-8  # of an asperity at a step
 _VISIT_DUGDALE_PROFILE, _VISIT_DUGDALE_TABLE = 9e-7, 2e-5
-_ENERGETIC = 3.0  # times as long where energies are asked for: 2.1 (spheres) to 3.6 (paraboloids)
+_ENERGETIC = 3.0  # factor on a visit where energies are asked for: 2.1 (spheres) to 3.6 (paraboloids)
 _FIRST_RULE, _MORE_NODES = 8, 1.5  # with the first rule's nodes to this power, an expected law takes longer
 
 

@@ -17,8 +17,8 @@ _PER_SUMMIT, _FIRST_ERROR = 9.0, 0.02
 _FEWEST, _FASTEST, _ORDER = 1.2, 2.0, 2.0  # refinement of a grid, and the order of the error in its cells
 _BEST_ORDER = 3.0  # the highest order that was found on maps
 BUDGET = 6e8
-"""Iterations times points that a path takes at most to find out whether an error is in reach, or where it is not: about
-a minute on one core, at 0.1 us each. A count, so that results do not depend on the machine."""
+"""Iterations times points that may be spent on the question whether an error is in reach, and on a path where it is not
+(about a minute on one core, at 0.1 us each). A count, so that results do not depend on the machine."""
 _WORK_ORDER = 2.5  # order of that number in the points along a side: more iterations on finer grids
 
 

@@ -13,10 +13,10 @@ from roughmdr.errors import RoughmdrError
 from roughmdr.numerics.arguments import Floats
 from roughmdr.schema.quantities import EntryError, Quantity
 
-_ROW_DISTANCE = {"square": 1.0, "hexagonal": math.sqrt(0.75)}  # over the pitch
+_ROW_DISTANCE = {"square": 1.0, "hexagonal": math.sqrt(0.75)}  # distance of rows, in pitches
 _PERIOD = {"square": 1, "hexagonal": 2}  # rows after which the lattice repeats
-_MOST_OBLONG = 2.0  # ratio of the sides of a patch
-_SUGGESTED_WITHIN = 1000  # of the number of asperities: where others that fit are looked for
+_MOST_OBLONG = 2.0  # largest ratio of the sides of a patch
+_SUGGESTED_WITHIN = 1000  # largest change of a number of asperities to one that fits, in a message
 _MOST_ON_A_SIDE = 30_000  # sites: as many as the asperities that a patch may hold
 LATTICES = tuple(_ROW_DISTANCE)
 
@@ -48,16 +48,16 @@ def lattice_of(kind: str, count: int, area: float) -> Lattice | None:
     """Return the lattice of so many sites on an area [m2] whose patch is the nearest to a square; None without one."""
     divisors = [number for number in range(1, math.isqrt(count) + 1) if count % number == 0]
     rows = [row for number in divisors for row in {number, count // number} if row % _PERIOD[kind] == 0]
-    found = [(max(ratio, 1.0 / ratio), row) for row in rows for ratio in (_ratio(kind, count, row),)]
-    oblong, best = min(found, default=(math.inf, 0))
+    oblong, best = min(((_oblong(kind, count, row), row) for row in rows), default=(math.inf, 0))
     if oblong > _MOST_OBLONG:
         return None
     return Lattice(best, count // best, math.sqrt(area / count / _ROW_DISTANCE[kind]), kind)
 
 
-def _ratio(kind: str, count: int, rows: int) -> float:
-    """Return the ratio of the sides of a patch."""
-    return count / (rows * rows * _ROW_DISTANCE[kind])
+def _oblong(kind: str, count: int, rows: int) -> float:
+    """Return the longer side of a patch with so many rows over the shorter one."""
+    ratio = count / (rows * rows * _ROW_DISTANCE[kind])
+    return max(ratio, 1.0 / ratio)
 
 
 def with_sites_counted(table: Any) -> Any:

@@ -7,7 +7,6 @@ squares are at the point of the interval that is nearest to that.
 """
 
 from collections.abc import Callable
-from functools import partial
 from typing import NamedTuple
 
 import numpy as np
@@ -15,14 +14,14 @@ import numpy as np
 from roughmdr.numerics.arguments import Floats
 
 _REACH = 3.0  # standard errors within which other intervals are sought
-_FRACTIONS = np.array([-1.0, -0.5, -0.25, -0.125, 0.125, 0.25, 0.5, 1.0])  # of it, at which they are
-_FLAT = 1e-6  # of the largest slope: smaller ones tell no standard error
+_FRACTIONS = np.array([-1.0, -0.5, -0.25, -0.125, 0.125, 0.25, 0.5, 1.0])  # places where they are sought, in reaches
+_FLAT = 1e-6  # slope over the largest one, below which it tells no standard error
 _AT_REST = 1e-4  # standard errors to the minimum of the smooth part, where the search by slopes has reached it
 _INSIDE = 1e-6  # standard errors from an edge, on the near side of it
 _ROUGHLY = 1e-4  # standard errors to which an edge is found where only its direction is asked for
 _APART = 0.05  # standard errors between places at which an edge is looked for, which tell its direction
-_MAX_EDGES = 3
-_LEAST_JUMP = 10.0  # of the sum of squares, over the variance of a deviation: smaller ones are no edge
+_MAX_EDGES = 3  # edges at which the nearest point may lie
+_LEAST_JUMP = 10.0  # least change of the sum of squares at an edge, over the variance of a deviation
 
 Cost = Callable[[Floats], float]
 """Returns the sum of squares at a point u, over the variance of a deviation."""
@@ -36,7 +35,7 @@ class Surroundings(NamedTuple):
     goal: Floats
     """The minimum of the smooth part, u."""
     variance: float
-    """Of a deviation."""
+    """Variance of a deviation."""
 
     @classmethod
     def of(cls, deviations: Floats, slopes: Floats) -> "Surroundings":
@@ -70,33 +69,28 @@ def nearest_within(cost: Cost, goal: Floats) -> Floats:
         level = cost(here)
         if cost(aim) <= level:
             return aim
-
-        def beyond(t: float, start: Floats, limit: float, ahead: Floats = ahead) -> bool:
-            return cost(start + t * ahead) > limit
-
-        far = _until(partial(beyond, start=here, limit=level), (0.0, way), _INSIDE)
+        far = _edge(cost, here, ahead, level, (0.0, way), _INSIDE)
         jump = cost(here + (far + 2.0 * _INSIDE) * ahead) - level
         if jump < _LEAST_JUMP:
             break
         limit = level + 0.5 * jump
         normal = ahead.copy()
         for side in np.linalg.svd(ahead[None])[2][1:]:
-            apart = partial(beyond, start=here + _APART * side, limit=limit)
-            normal -= (_until(apart, (far - 1.0, far + 1.0), _ROUGHLY) - far) / _APART * side
+            apart = _edge(cost, here + _APART * side, ahead, limit, (far - 1.0, far + 1.0), _ROUGHLY)
+            normal -= (apart - far) / _APART * side
         normal /= np.linalg.norm(normal)
-        edge = here + far * ahead
         normals.append(normal)
-        ends.append(float(normal @ edge) - _INSIDE)
+        ends.append(float(normal @ (here + far * ahead)) - _INSIDE)
         here = here + max(far - _INSIDE, 0.0) * ahead
     return here
 
 
-def _until(beyond: Callable[[float], bool], between: tuple[float, float], error: float) -> float:
-    """Return up to where something is not beyond an edge, to this error."""
+def _edge(cost: Cost, start: Floats, ahead: Floats, limit: float, between: tuple[float, float], error: float) -> float:
+    """Return the distance ahead of a point up to which the cost is within a limit, by bisection to an error."""
     low, high = between
     while high - low > error:
         middle = 0.5 * (low + high)
-        low, high = (low, middle) if beyond(middle) else (middle, high)
+        low, high = (low, middle) if cost(start + middle * ahead) > limit else (middle, high)
     return low
 
 

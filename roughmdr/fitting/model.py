@@ -22,7 +22,7 @@ from roughmdr.schema.toml_text import parse_toml
 
 _NONE: tuple[Floats, Floats] = np.empty(0), np.empty(0)
 _LEAST_ERROR = 1e-12  # relative error of the force of a contact
-_LONGEST_STEP = 0.01  # of x, in differences
+_LONGEST_STEP = 0.01  # largest change of x in differences
 _JUMP = 0.5  # ratio of the differences to both sides of x, beyond which one of them holds a jump
 
 

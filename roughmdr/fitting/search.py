@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 _FTOL, _XTOL, _GTOL, _MAX_STEPS = 1e-10, 1e-7, 1e-12, 60
 _STARTS, _TRIED = 16, 3  # other starts a parameter, and how many of them are followed
-_MAX_ROUNDS = 8  # of the search beside jumps
+_MAX_ROUNDS = 8  # most changes to a better interval, or to a nearer edge, beside jumps
 _OTHER, _SAME = 1e-5, 1e-7  # changes of the sum of squares by which another interval is better, and by which an edge is
 _POOR = 0.05  # of the largest load: a fit with a larger deviation is sought from elsewhere too
 

@@ -8,21 +8,20 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from roughmdr.errors import RoughmdrError, StoreError
+from roughmdr.errors import RoughmdrError, StoreError, level_outside
 from roughmdr.fitting.words import is_open
 from roughmdr.storage.labelled import Labelled
 from roughmdr.storage.netcdf_reading import read_netcdf
 from roughmdr.storage.result_file import FIT, is_fit
-from roughmdr.storage.result_form import Form, attribute_faults, is_text, with_units
+from roughmdr.storage.result_form import Form, attribute_faults, is_text, refuse, with_units
 from roughmdr.storage.result_scene import scene_faults
-from roughmdr.variables import FIT_ATTRIBUTES, MEASURED
+from roughmdr.variables import BRANCHES, FIT_ATTRIBUTES, MEASURED
 
 if TYPE_CHECKING:
     import xarray as xr
 
 _ENDS = ("", "_standard_error", "_low", "_high")
 _CONTROLS = ("remote", "separation")
-_BRANCHES = ("loading", "unloading")
 
 
 def read_fit(path: Path) -> Labelled:
@@ -33,37 +32,32 @@ def read_fit(path: Path) -> Labelled:
         raise StoreError(f"{path}: {error}") from None
     if data.attrs.get("kind") != FIT:
         raise StoreError(f"{path}: holds no fit")
-    try:
-        return as_fit(data)
-    except RoughmdrError as error:
-        raise StoreError(f"{path}: not a fit as roughmdr writes it: {error}") from None
+    return as_fit(data, path)
 
 
 def given_fit(fit: "str | Path | xr.Dataset") -> Labelled | None:
     """Return a fit that is given by its file or as a Dataset; None where it is none, StoreError where it is broken.
 
-    A UserWarning tells the caller of the caller where the numbers in a file cannot be trusted.
+    A UserWarning tells the caller of a public function where the numbers in a file cannot be trusted.
     """
     if isinstance(fit, str | os.PathLike):
         if not is_fit(Path(fit)):
             return None
         data = read_fit(Path(fit))
         if fault := data.integrity_fault():
-            warnings.warn(f"{fit}: {fault}", UserWarning, stacklevel=3)
+            warnings.warn(f"{fit}: {fault}", UserWarning, stacklevel=level_outside())
         return data
     if getattr(fit, "attrs", {}).get("kind") != FIT:
         return None
-    try:
-        return as_fit(Labelled.of(fit))
-    except RoughmdrError as error:
-        raise StoreError(f"fit: not as roughmdr.fit returns it: {error}") from None
+    return as_fit(Labelled.of(fit))
 
 
-def as_fit(data: Labelled) -> Labelled:
-    """Return arrays as a fit, with the declared units where they have none; RoughmdrError if they are none."""
-    for check in (_attributes, _arrays, _values):
-        for fault in check(data):
-            raise RoughmdrError(fault)
+def as_fit(data: Labelled, file: Path | None = None) -> Labelled:
+    """Return arrays, of a file or not, as a fit, with the declared units where they have none; StoreError if they are
+    none.
+    """
+    faults = (fault for check in (_attributes, _arrays, _values) for fault in check(data))
+    refuse(faults, "fit", "fit", file)
     return with_units(data, _forms(data) | _optional_forms(data))
 
 
@@ -94,8 +88,8 @@ def _values(data: Labelled) -> Iterator[str]:
         array = (data.variables | data.coordinates).get(name)
         if array is not None and form.kind == "f" and name not in ends and not np.isfinite(array.values).all():
             yield f"{name} is not finite"
-    if not np.isin(data.coordinates["branch"].values, _BRANCHES).all():
-        yield f"branch must be {' or '.join(_BRANCHES)}"
+    if not np.isin(data.coordinates["branch"].values, BRANCHES).all():
+        yield f"branch must be {' or '.join(BRANCHES)}"
     for key, names in _parameters(data):
         value, error, low, high = (float(data.variables[name].values) for name in names)
         if not low <= value <= high:

@@ -39,7 +39,7 @@ def drop(ensemble: Ensemble, i: NDArray[np.int64], r: Floats) -> Floats:
 
 
 class Buried(NamedTuple):
-    """Which summits lie below a flank, and from where on they are part of the surface."""
+    """Summits that lie below a flank, and from where on they are part of the surface."""
 
     hidden: NDArray[np.bool_]
     emerging: Floats

@@ -8,7 +8,7 @@ class Overlap(NamedTuple):
 
     contacts: int
     share: float
-    """Of the force of those that overlap."""
+    """Share of the force of contacts that overlap."""
     crowding: float = 0.0
     """About the error of the force by contacts near to each other [1]."""
 

@@ -105,11 +105,11 @@ class Kernels(ModuleType):
     """(x, branch, params) -> the state on that branch, and what ``radius_force_stiffness`` returns; where
     ``one_by_one``."""
     cohesive_radius: Kernel
+    """(state, params) -> c over natural radius, where ``cohesive``."""
     equilibrium_at_radius: Callable[..., tuple[float, float, float]]
     """(a, natural radius, params) -> indentation, force and stiffness over their scales, of adhesion with a range."""
     cohesive_at_radius: Kernel
-    """(a, natural radius, params) -> cohesive radius over the natural one."""
-    """(state, params) -> c over natural radius, where ``cohesive``."""
+    """(a, natural radius, params) -> c over natural radius, of adhesion with a range."""
     relative_errors: Callable[..., tuple[float, float]]
     """params -> two relative errors for ``aggregate.error_bound``: of the force, relative to |P| plus twice the second
     of ``adhesion_terms``; of the indentation, relative to g + dl, 0 where the state comes from x itself."""

@@ -1,4 +1,4 @@
-"""Where the flat on a machine stands, if its force falls as the separation grows, whatever went before.
+"""The separations of a flat on a machine whose force falls as the separation grows, whatever went before.
 
 The demand of the flat (``machine.py``) then grows with the separation, and each demand of the machine is met once. They
 are met one after the other, each by Newton's method from the one before, held between the separations known to lie on
@@ -14,9 +14,9 @@ from roughmdr.errors import OutOfRange
 from roughmdr.loading.machine import Machine
 from roughmdr.numerics.arguments import Floats
 
-_MAX_ROUNDS, _MAX_HALVINGS = 100, 60
-_RTOL = 1e-13  # of the distance to the first touch: a shorter step is the last
-_FIRST = 2.0**-6  # of the depth scale: how far below first touch the flat is tried first
+_MAX_ROUNDS, _MAX_HALVINGS = 100, 60  # Newton steps to a demand; halvings of a step that leads to no equilibrium
+_RTOL = 1e-13  # step over the distance to the first touch, below which it is the last
+_FIRST = 2.0**-6  # first guess below first touch, over the depth scale
 _LONGEST = 2.0  # longest step down over the distance to the first touch
 
 ForceAndStiffness = Callable[[float], tuple[float, float]]

@@ -41,13 +41,13 @@ def coupled_conductance_error(contact_fraction: Floats, overlap: Floats, ensembl
 
 
 def sticking_error(conductance_error: float, ratio: float, coupled: Floats, share: Floats) -> float:
-    """Return the error of the stiffness of contacts that stick, as normal ones times G*/E*, the ``ratio``; NaN as that
-    of the conductance.
+    """Return the error of the stiffness of contacts that stick, if it is the normal one times G*/E*, the ``ratio``.
 
-    The directions of neighbours add at most 1 - G*/E* of what they change. That is ``coupled``, the share by which they
-    lower the conductance radius; where a patch repeats, whose counter pressure hides it, at random about the change of
-    a conductance by neighbours, over the root of the number of contacts (30 patches of 10, 40 and 160 discs each, 0.2
-    and 2 % contact: 0.5 to 0.8 of that at most). ``share`` is the contact fraction over that number; shape (n,) each.
+    It is NaN where that of the conductance is. The directions in which neighbours stand add at most 1 - G*/E* of what
+    neighbours change. That is ``coupled``, the share by which they lower the conductance radius. On a patch that
+    repeats the counter pressure hides it; at random it is then about the change of a conductance by neighbours, over
+    the root of the number of contacts (30 patches of 10, 40 and 160 discs each, 0.2 and 2 % contact: 0.5 to 0.8 of that
+    at most). ``share`` is the contact fraction over that number; shape (n,) each.
     """
     by_chance = _INDEPENDENT["asperities"] * np.sqrt(share)
     directions = float(np.max(np.maximum(np.abs(coupled), by_chance), initial=0.0))

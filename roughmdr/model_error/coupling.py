@@ -11,7 +11,7 @@ from roughmdr.numerics.arguments import Floats
 _SEPARATED, _POWER = 0.18, 2.5
 """Of contacts that are far from overlapping: (a/D)^5, as their contact fraction tells it."""
 _FIRST, _THIRD, _FULLER = 0.65, 1.5, 3.0
-"""To first order: (a/D)^3 likewise, and the factor by which it grows with the contact fraction."""
+"""Error of separated contacts to first order, (a/D)^3: factor, power of the contact fraction, and growth with it."""
 _CROWDED = 5.0
 """Growth with the contact fraction of the error by contacts near to each other (``interaction/crowding.py``); to first
 order they make up for a part of what is left out."""
@@ -22,7 +22,7 @@ _SUMMITS = 1.3
 
 _HILLS = 0.06
 """Of the hills of an isotropic map, from 0.3 to 20 % contact (``pipelines/hills.py``); it grows as the root of the
-ratio of the slopes along and across."""
+ratio of the slopes across and along the waves."""
 
 _LOADING, _UNLOADING = 0.7, 0.3
 """Error of the force of adhesive hills, by legs, over the pull-off forces of their contacts: where the attraction has a
@@ -67,7 +67,7 @@ def adhesive_hills_error(pull_offs: float, largest: float, loading: NDArray[np.b
 
 
 def foreseen_error(contact_fraction: float, overlap: float) -> float:
-    """Return it for asperities of which only the share of the force of overlapping contacts is known."""
+    """Return ``coupling_error`` where only the share of the force of overlapping contacts is known."""
     return float(coupling_error(np.array(contact_fraction), np.array(_TYPICAL_CROWDING * overlap)))
 
 

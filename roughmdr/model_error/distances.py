@@ -36,17 +36,20 @@ def error_by_distances(radius: Floats, load: Floats, at: Floats, sides: Floats |
     distance[np.arange(rows.size), rows] = np.inf
     displaced = (load / distance).sum(axis=1)
     if sides is not None:
-        displaced -= _mean_inverse_distance(sides) * (load.sum() - load[rows])
+        displaced -= _mean_inverse_from_middle(sides) * (load.sum() - load[rows])
     return float(2.0 / math.pi * np.sum(radius[rows] * displaced) / np.sum(load[rows]))
 
 
 def error_of_few(area: Floats, contacts: Floats, others: Floats, inverse_distance: float) -> Floats:
-    """Return the same of few contacts with a summed area [m2], each with so many others at a mean 1/r [1/m]."""
+    """Return by how much the force of few independent contacts is too high [1], whose positions are not known.
+
+    They have a summed area [m2], and each has so many ``others`` at a mean 1/r [1/m].
+    """
     radius = np.sqrt(area / (math.pi * np.maximum(contacts, 1.0)))
     return np.asarray(2.0 / math.pi * radius * np.maximum(others, 0.0) * inverse_distance)
 
 
-def _mean_inverse_distance(sides: Floats) -> float:
+def _mean_inverse_from_middle(sides: Floats) -> float:
     """Return the mean of 1/r [1/m] over a rectangle from its middle."""
     a, b = sides
     return float(2.0 * (np.arcsinh(b / a) / b + np.arcsinh(a / b) / a))

@@ -83,12 +83,7 @@ def drawable(source: "str | Path | xr.Dataset") -> Drawable:
     content = _content(data)
     if content == "ensemble":  # which the picture checks
         return Drawable(content, data, file)
-    try:
-        return Drawable(content, as_result(data) if content == "result" else as_fit(data), file)
-    except RoughmdrError as error:
-        made = f"{content}: not as roughmdr.{'run' if content == 'result' else 'fit'} returns it"
-        place = made if file is None else f"{file}: not a {content} as roughmdr writes it"
-        raise StoreError(f"{place}: {error}") from None
+    return Drawable(content, (as_result if content == "result" else as_fit)(data, file), file)
 
 
 def _content(data: Labelled) -> Content:

@@ -26,7 +26,7 @@ BRANCH_LINESTYLES = {"loading": "-", "unloading": "--"}
 COLOUR_MAP = "viridis"
 _LETTERS_PER_INCH = 12.0  # of a title
 _DPI = 160
-_REASON_LETTERS = 200  # of what matplotlib says, in a message
+_REASON_LETTERS = 200  # most letters of what matplotlib says, in a message
 _SALT = "roughmdr"  # so that an SVG of one figure is always the same
 
 

@@ -15,10 +15,10 @@ if TYPE_CHECKING:
     from roughmdr.batch.foresee import Prospect
     from roughmdr.batch.plan import Plan
 
-FEW = 10.0
+_FEW = 10.0
 """Effective number of contacts below which the load of a sample scatters by more than a third of itself."""
 
-_SAMPLES = {"surface": "map", "spectrum": "map", "file": "ensemble"}
+_SAMPLES = {"surface": "map", "spectrum": "map", "file": "ensemble"}  # words for a sample, by source
 
 
 def sample_lines(effective: list[Floats], scene: str) -> Iterator[tuple[str, str]]:
@@ -28,12 +28,12 @@ def sample_lines(effective: list[Floats], scene: str) -> Iterator[tuple[str, str
     median counts. Nothing is said where the scene asks for so few asperities.
     """
     known = [float(np.median(cell[np.isfinite(cell)])) for cell in effective if np.isfinite(cell).any()]
-    few = [number for number in known if number < FEW]
+    few = [number for number in known if number < _FEW]
     asperities = parse_toml(scene).get("asperities")
     if not few or not isinstance(asperities, dict):
         return
     count = asperities.get("count")
-    if isinstance(count, int) and count < FEW:
+    if isinstance(count, int) and count < _FEW:
         return
     least = min(few)
     counted = " to ".join(dict.fromkeys(f"{number:.2g}" for number in (least, max(few))))
@@ -56,6 +56,6 @@ def sample_of_result(result: Labelled) -> Iterator[tuple[str, str]]:
 
 
 def foreseen_sample(plan: "Plan", prospect: "Prospect") -> Iterator[tuple[str, str]]:
-    """Yield that of a plan, from the cells that were foreseen."""
+    """Yield the line "sample" of a plan, from the cells that were foreseen."""
     effective = [np.array([cell.law.effective_contacts]) for cell in prospect.foreseen]
     yield from sample_lines(effective, plan.scene.toml)

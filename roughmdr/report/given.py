@@ -5,7 +5,7 @@ import warnings
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from roughmdr.errors import RoughmdrError, StoreError, level_outside
+from roughmdr.errors import StoreError, level_outside
 from roughmdr.schema.wording import short_repr
 from roughmdr.storage.labelled import Labelled
 from roughmdr.storage.result_file import read_result
@@ -18,15 +18,12 @@ if TYPE_CHECKING:
 def given_result(result: "str | Path | xr.Dataset") -> tuple[Labelled, Path | None]:
     """Return a result, and its file if it is in one; StoreError where it is none.
 
-    A UserWarning tells the caller of the caller where the numbers in a file cannot be trusted.
+    A UserWarning tells the caller of a public function where the numbers in a file cannot be trusted.
     """
     import xarray as xr
 
     if isinstance(result, xr.Dataset):
-        try:
-            return as_result(Labelled.of(result)), None
-        except RoughmdrError as error:
-            raise StoreError(f"result: not as roughmdr.run returns it: {error}") from None
+        return as_result(Labelled.of(result)), None
     if not isinstance(result, str | os.PathLike):
         raise StoreError(f"result is {short_repr(result)}; it must be a path or a Dataset as roughmdr.run returns it")
     data = read_result(Path(result))

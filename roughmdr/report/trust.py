@@ -27,7 +27,7 @@ from roughmdr.variables import LATERAL
 _TOLD = 0.01  # parts of the model error below this are not told
 _TINY = 1e-6
 _LEAST, _MOST = 0.9, 1.0 + 1e-9
-"""An error between these, over that of the contact fraction, is that of the contact fraction."""
+"""Range of an error over that of its contact fraction within which it was estimated from the contact fraction."""
 _NO_AREA = "not known: the asperities have no nominal area, so that nothing tells how near they are to each other"
 
 _OPENINGS = {

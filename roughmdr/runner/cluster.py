@@ -25,7 +25,7 @@ _COUNT_INTERVAL = 1.0  # between counts of the threads [s]
 _TIMEOUT = 30.0  # for an answer of the scheduler [s]
 _GREETING_TIMEOUT = 5.0  # for the first bytes of a scheduler, so that a wrong address is told within ten seconds [s]
 _GREETING = b"pickle-protocol"  # key of the handshake with which a dask scheduler opens a connection
-_GREETING_BYTES = 2**12  # within which it is
+_GREETING_BYTES = 2**12  # first bytes of a connection, which hold that key
 
 
 class Tls(NamedTuple):

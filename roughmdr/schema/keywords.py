@@ -15,7 +15,8 @@ _R = TypeVar("_R")
 def named_keywords(function: Callable[_P, _R], options: type | None = None) -> Callable[_P, _R]:
     """Return a function that raises TypeError for an unknown keyword before anything else, and says which may be meant.
 
-    What ``**given`` may hold is told by its annotation, ``Unpack`` of a TypedDict, or by the dataclass ``options``.
+    ``**given`` may hold the keys of its annotation, ``Unpack`` of a TypedDict, or the fields of the dataclass
+    ``options``.
     """
 
     @wraps(function)

@@ -46,10 +46,7 @@ def read_result(path: Path) -> Labelled:
         raise StoreError(f"{path}: {error}") from None
     if data.attrs.get("kind") == FIT:
         raise StoreError(f"{path}: holds a fit, no result; info, plot and cite show it, and run computes its scene")
-    try:
-        return as_result(data)
-    except RoughmdrError as error:
-        raise StoreError(f"{path}: not a result as roughmdr writes it: {error}") from None
+    return as_result(data, path)
 
 
 def is_fit(path: Path) -> bool:

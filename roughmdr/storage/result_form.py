@@ -1,10 +1,12 @@
 """The arrays that a result can hold, from the declarations of its variables: dimensions, types, units, companions."""
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
+from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
 
+from roughmdr.errors import StoreError
 from roughmdr.storage.labelled import Array, Labelled
 from roughmdr.variables import (
     CELL_VARIABLES,
@@ -112,6 +114,13 @@ def attribute_faults(attrs: dict[str, Any], declared: dict[str, Attribute]) -> I
                 yield f"the attribute {name} is no {_NAMES_OF_TYPES[each.dtype]}"
             elif each.names and attrs[name] not in each.names:
                 yield f"the attribute {name} is none of {', '.join(each.names)}"
+
+
+def refuse(faults: Iterable[str], function: str, kind: str, file: Path | None) -> None:
+    """Raise StoreError with the first fault of what a ``function`` has returned, in a ``file`` or in memory."""
+    for fault in faults:
+        what = f"{kind}: not as roughmdr.{function} returns it"
+        raise StoreError(f"{what if file is None else f'{file}: not a {kind} as roughmdr writes it'}: {fault}")
 
 
 def with_units(data: Labelled, forms: dict[str, Form]) -> Labelled:

@@ -4,8 +4,8 @@ Anyone may have changed the file. A result may hold more than is declared; what 
 """
 
 from collections.abc import Iterator
+from pathlib import Path
 
-from roughmdr.errors import RoughmdrError
 from roughmdr.storage.labelled import Labelled
 from roughmdr.storage.result_form import (
     attribute_faults,
@@ -13,6 +13,7 @@ from roughmdr.storage.result_form import (
     control_forms,
     forms_of,
     is_text,
+    refuse,
     statistics_of,
     with_units,
 )
@@ -31,11 +32,12 @@ from roughmdr.variables import (
 _REQUIRED_VARIABLES = ("status", "run_time", "numerical_error")
 
 
-def as_result(data: Labelled) -> Labelled:
-    """Return arrays as a result, with the declared units where they have none; RoughmdrError if they are none."""
-    for check in (_missing, _attributes, _dimensions, _arrays, _companions, value_faults):
-        for fault in check(data):
-            raise RoughmdrError(fault)
+def as_result(data: Labelled, file: Path | None = None) -> Labelled:
+    """Return arrays, of a file or not, as a result, with the declared units where they have none; StoreError if they
+    are none.
+    """
+    checks = (_missing, _attributes, _dimensions, _arrays, _companions, value_faults)
+    refuse((fault for check in checks for fault in check(data)), "run", "result", file)
     return with_units(data, forms_of(data.variables["status"].dims) | control_forms(data))
 
 

@@ -3,11 +3,11 @@
 from collections.abc import Iterator
 
 import numpy as np
-from numpy.typing import NDArray
 
 from roughmdr.storage.labelled import Labelled
 from roughmdr.storage.result_form import is_text, statistics_of
 from roughmdr.variables import (
+    BRANCHES,
     DONE,
     FAILED,
     LAW_VARIABLES,
@@ -21,7 +21,6 @@ from roughmdr.variables import (
     RUN_VARIABLES,
 )
 
-_BRANCHES = ("loading", "unloading")
 _COUNTS = ("realization_count", "pull_off_count")
 _CODES = ("adhesion_law", "accuracy_method")
 _KNOWN_TOGETHER = {
@@ -40,8 +39,8 @@ def value_faults(data: Labelled) -> Iterator[str]:
     """Find values that no run writes, in arrays that are known to have the right types and dimensions."""
     if not np.isin(data.variables["status"].values, (DONE, FAILED, NOT_RUN)).all():
         yield f"status must be {DONE}, {FAILED} or {NOT_RUN}"
-    if not np.isin(data.coordinates["branch"].values, _BRANCHES).all():
-        yield f"branch must be {' or '.join(_BRANCHES)}"
+    if not np.isin(data.coordinates["branch"].values, BRANCHES).all():
+        yield f"branch must be {' or '.join(BRANCHES)}"
     for name, array in data.coordinates.items():
         if array.values.dtype.kind == "f" and not np.isfinite(array.values).all():
             yield f"{name} is not finite"
@@ -70,15 +69,12 @@ def _computed(data: Labelled) -> Iterator[str]:
             yield f"{name} is not finite, and status says that it was computed"
     for name, others in _KNOWN_TOGETHER.items():
         if name in data.variables:
-            known = np.isfinite(data.variables[name].values) & (status == DONE).reshape(_shape_of(status, data, name))
+            array = data.variables[name]
+            done = (status == DONE)[..., None] if array.dims[-1:] == ("step",) else status == DONE
+            known = np.isfinite(array.values) & done
             for other in others:
                 if other in data.variables and not np.isfinite(data.variables[other].values[known]).all():
                     yield f"{other} is not finite where {name} is known"
-
-
-def _shape_of(status: NDArray[np.int64], data: Labelled, name: str) -> tuple[int, ...]:
-    """Return the shape of the status for arrays that may have steps."""
-    return (*status.shape, 1) if data.variables[name].dims[-1:] == ("step",) else status.shape
 
 
 def _pull_offs(data: Labelled) -> Iterator[str]:
@@ -111,12 +107,8 @@ def _statistics(data: Labelled) -> Iterator[str]:
     for name in (*LAW_VARIABLES, *PULL_OFF_NUMBERS, *PULL_OFF_PER_AREA):
         if f"{name}_mean" in data.variables:
             mean, error, least, greatest = (data.variables[each].values for each in statistics_of(name))
-            if _outside(mean, least, greatest).any():
+            slack = _ROUNDING * np.fmax(np.abs(least), np.abs(greatest))
+            if ((mean < least - slack) | (mean > greatest + slack)).any():
                 yield f"{name}_mean does not lie between {name}_min and {name}_max"
             if (error < 0.0).any():
                 yield f"{name}_sem must be at least 0"
-
-
-def _outside(mean: NDArray[np.float64], least: NDArray[np.float64], greatest: NDArray[np.float64]) -> NDArray[np.bool_]:
-    slack = _ROUNDING * np.fmax(np.abs(least), np.abs(greatest))
-    return (mean < least - slack) | (mean > greatest + slack)

@@ -3,6 +3,7 @@
 from roughmdr.variables.asperity import ASPERITY, FIELDS
 from roughmdr.variables.attributes import FIT_ATTRIBUTES, RESULT_ATTRIBUTES, STATED, Attribute
 from roughmdr.variables.law import (
+    BRANCHES,
     CONDUCTANCES,
     CONTROLS,
     COORDINATES,
@@ -49,6 +50,7 @@ __all__ = [
     "ADHESION_CODES",
     "ASPERITY",
     "AUXILIARY_COORDINATES",
+    "BRANCHES",
     "CELL_VARIABLES",
     "CONDUCTANCES",
     "CONTROLS",

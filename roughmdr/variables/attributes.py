@@ -14,7 +14,7 @@ class Attribute:
     free: bool = False
     """Whether users and their tools may change it: the checksum does not cover it."""
     names: tuple[str, ...] = ()
-    """Those of which it is one; empty for any text."""
+    """Allowed values; empty where any is."""
 
 
 def _declare(*rows: Attribute) -> dict[str, Attribute]:

@@ -81,6 +81,9 @@ LAW_VARIABLES = {
 CONTROLS = {"separation": "m", "force": "N", "pressure": "Pa", "remote": "m"}
 """Quantities that a path can control, with their units: the last three by a machine."""
 
+BRANCHES = ("loading", "unloading")
+"""Values of the coordinate ``branch``."""
+
 MEASURED = {**CONTROLS, "piezo": "m", "force_error": "N", "pressure_error": "Pa"}
 """Columns that a measured curve can have, with their units."""
 

@@ -174,7 +174,7 @@ PULL_OFF_PER_AREA = declare(
     ("pull_off_pressure", "Pa", "largest tension of the unloading over nominal area"),
     ("pull_off_contact_fraction", "1", "contact area over nominal area at the largest tension of the unloading"),
 )
-"""Those of them over the nominal area, where that is known."""
+"""Numbers of the pull-off of each realisation over the nominal area, where that is known."""
 
 PULL_OFF_OF_CELLS = declare(
     ("pull_off_count", "1", "number of realizations with a pull-off: whose unloading does not end in contact"),

@@ -15,8 +15,10 @@ GROUPS = ("few contacts", "random", "separated", "square", "nayak", "map", "crow
 FACTOR = 3.0
 """Within which the estimate is to be."""
 _MIN_POINTS = 2.5  # of the grid a contact radius; below, boundary elements are off by a per cent and more
-_CELLS = {"hexagonal": "separated", "hard_core 0.5": "separated", "hard_core 0.7": "separated"}
-_CELLS |= {"crowd 0.5": "crowd", "crowd 0.7": "crowd"}
+_CELLS = {
+    **dict.fromkeys(("hexagonal", "hard_core 0.5", "hard_core 0.7"), "separated"),
+    **dict.fromkeys(("crowd 0.5", "crowd 0.7"), "crowd"),
+}
 
 
 def estimates(contact_fraction: Floats, group: NDArray[np.str_]) -> Floats:

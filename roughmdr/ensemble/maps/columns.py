@@ -11,11 +11,12 @@ from roughmdr.numerics.arguments import Floats
 from roughmdr.schema.units import unit_factor
 
 _FEWEST = 9  # points of the smallest map
-_MOST_COLUMNS = 8  # of points with further numbers; a map is wider
+_MOST_COLUMNS = 8  # most numbers in a row that is a point, x, y, z and others; a map is wider
 _LEAST_SHARE = 0.5
 """Share of the points of a grid that a file must hold: instruments leave out those that they could not measure."""
 _OFF_GRID = 0.2
 """Distance of a coordinate from the grid at most, in spacings: it may be rounded to one digit of a spacing."""
+# Title of a column: x, y or z, with its unit in brackets. A comment with the units of all coordinates, or of heights.
 _TITLE = re.compile(r"\s*\"?(?:pos\w*\s*)?([xyz])(?:\b|_)[^\[(]*(?:[\[(]\s*([^\])]*?)\s*[\])])?.*", re.IGNORECASE)
 _UNITS = re.compile(r"(lateral|xy|value|z)[ -]units?\s*[:=]\s*(\S+)", re.IGNORECASE)
 
@@ -40,7 +41,7 @@ def map_of_points(table: TextTable) -> RawMap:
 
     Titles of the columns, or their values, tell which is z. RoughmdrError where the points do not lie on a grid.
     """
-    units, order = _titles(table)
+    (lateral, unit), order = _titles(table)
     points = table.numbers
     grids = [_grid(points[:, first]) for first in range(3)]
     lines = ""
@@ -59,10 +60,9 @@ def map_of_points(table: TextTable) -> RawMap:
             continue
         height = np.full(shape, np.nan)
         height[of_x[0], of_y[0]] = points[:, z]
-        steps = of_x[1], of_y[1]
-        lateral, unit = units
-        spacing = (_metres(lateral) * steps[0], _metres(lateral) * steps[1]) if lateral else None
-        return RawMap(height, unit, spacing, steps=None if spacing else steps)
+        if not lateral:
+            return RawMap(height, unit, steps=(of_x[1], of_y[1]))
+        return RawMap(height, unit, (_metres(lateral) * of_x[1], _metres(lateral) * of_y[1]))
     if lines:
         raise RoughmdrError(f"columns x, y, z: lines {lines} give a height to one point")
     kinds = " and ".join(f"{np.unique(points[:, k]).size} different {name}" for k, name in enumerate("xy"))

@@ -41,14 +41,14 @@ def _open(source: Any, known_format: str | None, channel: str | None, kind: str)
         except RoughmdrError:
             raise
         except Exception as error:
-            kind = type(error).__name__
-            if kind == "IndexError":
+            name = type(error).__name__
+            if name == "IndexError":
                 raise RoughmdrError("holds no channel of heights that SurfaceTopography can read") from error
-            if kind == "CorruptFile" and str(error):
+            if name == "CorruptFile" and str(error):
                 said = str(error).splitlines()[0].rstrip(".")
                 raise RoughmdrError(f"holds no heights that SurfaceTopography can read: {said}") from error
             raise RoughmdrError(
-                f"in no format that SurfaceTopography can read ({kind}); text is .txt, .csv, .tsv, .dat, .xyz"
+                f"in no format that SurfaceTopography can read ({name}); text is .txt, .csv, .tsv, .dat, .xyz"
             ) from error
 
 

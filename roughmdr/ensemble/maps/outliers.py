@@ -4,8 +4,8 @@ Thresholds were chosen on an optical and an atomic-force map, Gaussian maps of H
 points a wave, white noise, pillars, and 300 maps of steep grains, whose sharpest stands out by 4.2 (``_SPIKE``).
 """
 
-from collections.abc import Iterator
-from typing import Any, Literal, NamedTuple
+from collections.abc import Iterable, Iterator
+from typing import Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -211,7 +211,7 @@ def _levels(height: Floats) -> tuple[Floats, NDArray[np.intp]]:
     return levels, counts * every
 
 
-def _is_frequent(value: float, number: int, levels: Floats, counts: NDArray[Any], size: int) -> bool:
+def _is_frequent(value: float, number: int, levels: Floats, counts: NDArray[np.intp], size: int) -> bool:
     """Return whether many more points share a value than share those next to it."""
     at = int(np.searchsorted(levels, value))
     others = [k for k in range(max(at - _NEAR, 0), min(at + _NEAR + 1, levels.size)) if levels[k] != value]
@@ -220,7 +220,7 @@ def _is_frequent(value: float, number: int, levels: Floats, counts: NDArray[Any]
     return bool(number > _TIMES * float(np.mean(counts[others])))
 
 
-def _steps(height: Floats, without: Any) -> _Steps:
+def _steps(height: Floats, without: Iterable[float]) -> _Steps:
     """Return the steps between neighbours in a sample of rows, of which values may be left out."""
     rows = np.arange(0, height.shape[0] - 1, -(-height.size // _SAMPLE))
     part, after = (np.where(np.isin(each, list(without)), np.nan, each) for each in (height[rows], height[rows + 1]))

@@ -45,12 +45,14 @@ class SizeReader:
 
     def __call__(self, value: object) -> Size:
         """Return one side, or both, in SI."""
+        if isinstance(value, Sides):
+            return value
         if isinstance(value, dict):
             if value.keys() != set(Sides._fields):
                 raise RoughmdrError('must name both sides, as { across = "100 um", down = "50 um" }')
             return Sides(**{name: self._side(side) for name, side in value.items()})
-        if isinstance(value, Sides) or not isinstance(value, list | tuple):
-            return value if isinstance(value, Sides) else self._side(value)
+        if not isinstance(value, list | tuple):
+            return self._side(value)
         if len(value) != 2:
             raise RoughmdrError('must be one side, as "100 um", or two, along x and y, as ["100 um", "50 um"]')
         return self._side(value[0]), self._side(value[1])

@@ -9,8 +9,8 @@ from roughmdr.ensemble.maps.raw_map import RawMap
 from roughmdr.ensemble.maps.text_table import Line, TextTable, read_table, text_of
 from roughmdr.errors import RoughmdrError
 
-_SAYS = re.compile(r"\w\s*[:=：]|wyko|spip", re.IGNORECASE)
-_SIDES = re.compile(r"width|[xy]-length|size", re.IGNORECASE)
+_SAYS = re.compile(r"\w\s*[:=：]|wyko|spip", re.IGNORECASE)  # comments that may be a header
+_SIDES = re.compile(r"width|[xy]-length|size", re.IGNORECASE)  # comments that tell sides: the rows are no points
 _OF_INSTRUMENTS = ("aISO", "bISO", "aBCR", "bBCR", "fileformat")
 """Beginnings of text formats whose rows are not those of the map."""
 
@@ -18,7 +18,7 @@ _OF_INSTRUMENTS = ("aISO", "bISO", "aBCR", "bBCR", "fileformat")
 def read_text(path: Path, channel: str | None) -> RawMap:
     """Read rows of heights, along y, or along x where a header says size or unit, and in .asc; or columns x, y, z.
 
-    What is no text, or the text format of an instrument, is left to ``read_instrument``.
+    Binary files and text formats of instruments are left to ``read_instrument``.
     """
     text = text_of(path)
     if text is None or text.startswith(_OF_INSTRUMENTS):

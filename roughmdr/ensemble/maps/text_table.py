@@ -10,10 +10,10 @@ from roughmdr.errors import RoughmdrError
 from roughmdr.numerics.arguments import Floats
 
 _DELIMITERS = (";", "\t", ",")
-_UNDEFINED = ("", "na", "n/a", "null", "none", "bad", "-", "--", "---", "*")  # and nan and inf
+_UNDEFINED = ("", "na", "n/a", "null", "none", "bad", "-", "--", "---", "*")  # words for no height, beside nan and inf
 _DECIMAL_COMMA = re.compile(r"[-+]?\d*,\d+(?:e[-+]?\d+)?|[-+]?\d+", re.IGNORECASE)
-_BYTE_ORDER_MARKS = (b"\xff\xfe", b"\xfe\xff")
-_CONTROL = re.compile(r"[\x00-\x08\x0e-\x1b]")
+_BYTE_ORDER_MARKS = (b"\xff\xfe", b"\xfe\xff")  # of UTF-16
+_CONTROL = re.compile(r"[\x00-\x08\x0e-\x1b]")  # characters that binary files have, and texts do not
 
 
 class Line(NamedTuple):
@@ -88,7 +88,7 @@ def _holds_numbers(row: str) -> bool:
     """Return whether a line is a row: numbers, or words that stand for one, and at least one number."""
     delimiter = _delimiter(row)
     words = row.strip(" ").split(delimiter)
-    values = [_value(word if delimiter == "," else _as_point(word)) for word in words]
+    values = [_value(word, delimiter) for word in words]
     return None not in values and any(np.isfinite(value) for value in values if value is not None)
 
 
@@ -96,21 +96,18 @@ def _refuse_mostly_numbers(titles: list[Line], delimiter: str | None) -> None:
     """RoughmdrError where a line before the first row is a row but for some words."""
     for number, title in titles:
         words = title.split(delimiter)
-        wrong = [k for k, word in enumerate(words) if _value(word if delimiter == "," else _as_point(word)) is None]
+        wrong = [k for k, word in enumerate(words) if _value(word, delimiter) is None]
         if len(words) > 2 * len(wrong) and len(words) > 2:
             raise RoughmdrError(f"line {number}, column {wrong[0] + 1}: {words[wrong[0]].strip()!r} is no number")
 
 
-def _as_point(word: str) -> str:
-    """Return a number with a decimal point in place of a comma, if it has no point."""
-    return word if "." in word else word.replace(",", ".")
-
-
-def _value(word: str) -> float | None:
-    """Return the number that a word is, NaN for an undefined one, or None."""
+def _value(word: str, delimiter: str | None) -> float | None:
+    """Return the number that a word is, NaN for an undefined one, or None; its comma is a decimal mark."""
     word = word.strip().strip('"')
     if word.lower() in _UNDEFINED:
         return np.nan
+    if delimiter != "," and "." not in word:
+        word = word.replace(",", ".")
     try:
         return float(word)
     except ValueError:
@@ -140,7 +137,7 @@ def _by_words(rows: list[Line], delimiter: str | None) -> list[list[float]]:
     table = list[list[float]]()
     for number, row in rows:
         words = row.split(delimiter)
-        values = [_value(word) for word in words]
+        values = [_value(word, delimiter) for word in words]
         if None in values:
             column = values.index(None)
             raise RoughmdrError(f"line {number}, column {column + 1}: {words[column].strip()!r} is no number")

@@ -21,8 +21,8 @@ from roughmdr.interaction.jkr.lone import Surface
 from roughmdr.interaction.placed_asperities import Placed
 from roughmdr.numerics.arguments import Floats
 
-_LONGEST = 0.5  # way on which pairs that overlap stay as they are where the flat rises, over its depth
-_NEARER, _LEAST = 0.9, 1e-11  # of the way to an event, and of the natural depth: how near it is come to
+_LONGEST = 0.5  # longest rise of the flat with the same overlaps, over its depth below the highest asperity
+_NEARER, _LEAST = 0.9, 1e-11  # share of the way to an event to go at a time; least way, over the natural depth
 _AT_REST = 1e-9  # residual over the natural depth of contacts for which the same pairs overlap as before
 _GROWTH = 1.3  # of the number of asperities that are looked at, where one that was left out may touch
 _MARGIN = 0.25  # of the natural depth, within which asperities out of contact are looked at

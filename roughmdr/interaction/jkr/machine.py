@@ -19,8 +19,8 @@ _LONGEST, _SHORTEST = 0.5, 1e-4  # way of the flat at a time, over the natural d
 _OVERSHOOT = 1.2  # over the way to where the demand would be passed
 _SHORTER, _MAX_SHORTER = 0.1, 4
 _MAX_WAYS = 100_000
-_MAX_TRIALS = 20  # of where the demand is met, as pairs come to overlap
-_SETTLED = 1e-12  # of the natural depth, to which that is found
+_MAX_TRIALS = 20  # secant steps to where a demand is met, as pairs come to overlap
+_SETTLED = 1e-12  # last of these steps, over the natural depth
 
 
 class _Stop(NamedTuple):

@@ -11,13 +11,16 @@ from roughmdr.result.between import ANYWHERE, REACH, off_line
 
 _MARGIN = 1.5
 """Factor on steps and realisations that are foreseen to do."""
+_FOR_JUMPS = 0.75
+"""Largest share of an allowed error that jumps may take; the rest is for the bend."""
 
 
 def between_points(law: Law, part: StablePart, quantity: Quantity) -> Floats:
     """Return how far a law may be off the line between neighbouring points, bent and by jumps: [2, point - 1].
 
-    Over the pressure both curves jump; what counts is the value less the slope times the pressure, the slope from the
-    next points but one, as steps of the pressure may be tiny. Over steps that a load jumps the whole line may be off.
+    Over the pressure, value and pressure jump together: what counts is the value less the slope times the pressure. The
+    slope is taken over three steps, since one step of the pressure may be tiny. Where a load jumps over steps, the line
+    may be off by its whole rise.
     """
     x, y = (part.pressure, part.value) if quantity.over_pressure else (part.overclosure, part.value)
     steps = np.arange(law.separation.size - 1)[:, None] + np.arange(-REACH, REACH + 2)
@@ -48,15 +51,15 @@ def remedy(law: Law, bent: float, jumps: float) -> str:
     """Return what would reduce errors between steps, given over those allowed, to 1.
 
     By a bend they fall with the square of the number of steps; by jumps with the root of the number of realisations,
-    while more steps do not help against the largest of them. At least a quarter of what is allowed is for the bend.
+    while more steps do not help against the largest of them.
     """
     if law.realizations == 0:
         more = max((_MARGIN * (bent + jumps)) ** 0.5, _MARGIN * jumps)
         return f"compute about {math.ceil(law.separation.size * more)} steps"
     steps, runs = law.separation.size, law.realizations
-    for_jumps = min(_MARGIN * jumps, 0.75)
+    for_jumps = min(_MARGIN * jumps, _FOR_JUMPS)
     more_steps = max(_MARGIN * bent / (1.0 - for_jumps), 1.0) ** 0.5
-    more_runs = max(_MARGIN * jumps / 0.75, 1.0) ** 2
+    more_runs = max(_MARGIN * jumps / _FOR_JUMPS, 1.0) ** 2
     asked = [f"{math.ceil(steps * more_steps)} steps"] if more_steps > 1.0 else []
     if more_runs > 1.0:
         asked.append(f"{math.ceil(runs * more_runs)} realisations, or take the expected law, which has no jumps")

@@ -16,8 +16,8 @@ from roughmdr.schema.wording import escape_controls
 from roughmdr.storage.result_file import EXPORT_MARK
 
 _WIDTH = 108  # of a line of the header; CalculiX and Abaqus read more
-_MOOSE_WIDTH = 116
-_NAMES = {"pressure": "PRES", "thermal_conductance": "TCC", "electrical_conductance": "ECC"}
+_MOOSE_WIDTH = 116  # letters of a line of numbers
+_NAMES = {"pressure": "PRES", "thermal_conductance": "TCC", "electrical_conductance": "ECC"}  # real constants of Ansys
 _OPTIONS = {
     "abaqus": {
         "pressure": "*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=TABULAR",

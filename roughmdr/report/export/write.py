@@ -26,12 +26,12 @@ from roughmdr.schema.wording import short_repr, suggestion
 from roughmdr.storage.files import check_ending, check_writable, replace_atomically
 from roughmdr.storage.labelled import Labelled
 from roughmdr.storage.result_file import check_same_kind
+from roughmdr.variables import BRANCHES
 
 if TYPE_CHECKING:
     import xarray as xr
 
 _LEAST_ERROR = 1e-9
-_BRANCHES = ("loading", "unloading")
 
 
 @dataclass(frozen=True)
@@ -48,7 +48,7 @@ class Export:
     def __post_init__(self) -> None:
         _check("to", self.to, list(FORMATS))
         _check("quantity", self.quantity, [*QUANTITIES, "nodes"])
-        _check("branch", self.branch, list(_BRANCHES))
+        _check("branch", self.branch, list(BRANCHES))
         if not _LEAST_ERROR <= self.error <= MOST_ERROR:
             raise StoreError(f"error is {self.error!r}; it must be from {_LEAST_ERROR:g} to {MOST_ERROR:g}")
         if self.quantity not in self.format.quantities:
