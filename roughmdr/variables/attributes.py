@@ -40,6 +40,7 @@ RESULT_ATTRIBUTES = _PROVENANCE | _declare(
     Attribute("nominal"),
     Attribute("path"),
     Attribute("slip"),
+    Attribute("lattice"),
     Attribute("map"),
     Attribute("accuracy"),
 )

@@ -120,7 +120,7 @@ RUN_DIAGNOSTICS = _diagnostics(
         "forces over the sum of the squares",
         merge="fmin",
     ),
-    Diagnostic("trusted_separation", "m", "separation below which the contact fraction is above 2 %"),
+    Diagnostic("trusted_separation", "m", "separation below which the error by interaction is above the trusted one"),
     Diagnostic(
         "edge_slope", "1", "largest slope of a profile at the edge of its contact", merge="maximum", unstated=0.0
     ),

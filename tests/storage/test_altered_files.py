@@ -27,7 +27,7 @@ from roughmdr.report.result_document import result_table
 from roughmdr.storage.labelled import Array, Labelled
 from roughmdr.storage.result_form import forms_of
 from roughmdr.storage.result_validation import as_result
-from roughmdr.variables import STATED
+from roughmdr.variables import RESULT_ATTRIBUTES, STATED
 
 FEW = {**ASPERITIES, "count": 6, "patch": "0.3 mm", "placement": "hard_core", "min_distance": "20 um"}
 PATH = {"separation": {"start": "2.5 um", "stop": "0 um", "steps": 4}, "unload": True}
@@ -168,12 +168,34 @@ def _without_attributes(data: Labelled) -> Iterator[tuple[str, Labelled]]:
 
 
 def test_all_that_is_declared_has_a_form() -> None:
-    """Every variable of a result is declared, with its unit, so that another unit is not read as its own."""
+    """Every variable and attribute of a result is declared, with its unit, so that another is not read as its own."""
     data = made("curves")
+    assert set(data.attrs) <= set(RESULT_ATTRIBUTES)
     forms = forms_of(data.variables["status"].dims)
     assert set(data.variables) <= set(forms)
     for name, array in data.variables.items():
         assert array.attrs.get("units", "") == forms[name].units
+
+
+@pytest.mark.parametrize("keep", ["curves", "statistics"])
+@pytest.mark.parametrize("estimator", ["sampled", "expected"])
+@pytest.mark.parametrize("adhesion", [None, {"model": "jkr", "work": "1 nJ/m^2"}])
+def test_a_loop_that_ends_without_tension_is_read(
+    adhesion: dict[str, str] | None, estimator: str, keep: str, tmp_path: Path
+) -> None:
+    table = scene(
+        asperities={**ASPERITIES, "count": 9, "patch": "0.3 mm", "placement": "square"},
+        adhesion=adhesion,
+        path={"separation": {"start": "clear", "stop": "0 um", "steps": 4}, "unload": True},
+        output={"keep": keep},
+        batch={"estimator": estimator} if estimator == "expected" else {"realizations": 2},
+    )
+    data = Labelled.of(rm.run(table, tmp_path / "out.nc"))
+    assert set(data.attrs) - {"checksum"} <= set(RESULT_ATTRIBUTES)
+    assert as_result(data) == data
+    told = CliRunner().invoke(main, ["info", str(tmp_path / "out.nc")])
+    assert told.exit_code == 0, told.stderr
+    assert not told.stderr
 
 
 @pytest.mark.parametrize(
