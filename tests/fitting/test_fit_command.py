@@ -137,7 +137,7 @@ def test_info_and_cite_know_a_fit_and_report_says_what_it_is(folder: Path) -> No
     assert told.stdout.startswith("fitted       adhesion.work")
     with xr.open_dataset(folder / "fit.nc") as fit:
         assert rm.info(fit) == rm.info(folder / "fit.nc") == told.stdout.rstrip("\n")
-        with pytest.raises(StoreError, match=r"not as roughmdr\.fit returns it: residual is missing"):
+        with pytest.raises(StoreError, match=r"not as roughmdr\.fit returns it: it has no residual"):
             rm.info(fit.drop_vars("residual"))
     assert "Johnson" in roughmdr("cite", "fit.nc", cwd=folder).stdout
     refused = roughmdr("report", "fit.nc", "-o", "page.html", cwd=folder)
