@@ -19,7 +19,7 @@ class Uncertainty(NamedTuple):
     """How well the sought numbers x of a fit are known."""
 
     influence: Floats
-    """By how much each standard deviation of each step moves each parameter, [parameter, step]; then what none tells."""
+    """How far a standard deviation of each step moves each parameter, [parameter, step]; last, what no step tells."""
     by_even_noise: Floats
     """Likewise of noise that is even; it says what the curve tells apart, however small its noise."""
     slopes: Floats
