@@ -71,7 +71,9 @@ def uncertainty(model: Model, found: Found) -> Uncertainty:
     lengths = np.linalg.norm(slopes, axis=0)
     if not lengths.max() > 0.0:
         keys = ", ".join(parameter.key for parameter in model.parameters)
-        raise OutOfRange(f"free: {keys}: changes nothing along the measured path, where the scene has no contact")
+        negative = bool(model.curve.load.sum() < 0.0)
+        sign = f"; {model.curve.quantity} is mostly negative, and compression is positive" * negative
+        raise OutOfRange(f"free: {keys}: changes nothing along the measured path, where the scene has no contact{sign}")
     lengths = np.maximum(lengths, _LEAST_SLOPE * lengths.max())
     left, sizes, right = np.linalg.svd(slopes / lengths, full_matrices=False)
     _check_enough(model, slopes / lengths)

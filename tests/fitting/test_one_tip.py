@@ -106,6 +106,13 @@ def test_no_more_points_than_parameters_tell_no_error(touching: int) -> None:
         assert inside(rm.fit(frame, tip.scene(), [MODULUS, OFFSET]), MODULUS, 2.1e6)
 
 
+def test_compression_of_the_other_sign_is_told() -> None:
+    tip, depth = Tip("hertz", 1e-7, 2e6), np.linspace(-1e-7, 1e-7, 30)
+    frame = pd.DataFrame({"separation": -depth, "force": -tip.law(2e6, 0.0, depth)})
+    with pytest.raises(OutOfRange, match="force is mostly negative, and compression is positive"):
+        rm.fit(frame, tip.scene(), [MODULUS, OFFSET])
+
+
 def test_what_no_point_tells_is_not_known_without_noise() -> None:
     tip, depth = Tip("hertz", 1e-7, 2e6), np.linspace(-1e-7, 1e-7, 30)
     frame = pd.DataFrame({"separation": -depth, "force": tip.law(2e6, 0.0, depth)})
