@@ -19,6 +19,7 @@ if TYPE_CHECKING:
 _UNIT = r"\[[^\]]*\]|\([^)]*\)|/\s*\S+"
 _HEADER = re.compile(rf"\s*([^\[\](/]*?)\s*({_UNIT})?\s*")
 _SPACED_HEADER = re.compile(rf"[^\s\[(/]+(?:\s*(?:{_UNIT}))?")
+_DECIMAL_COMMA = re.compile(r"([-+]?\d*),(\d+(?:e[-+]?\d+)?)", re.IGNORECASE)
 _MAX_BYTES = 2**28
 
 
@@ -59,12 +60,23 @@ def _of_text(path: Path) -> Columns:
         titles = _SPACED_HEADER.findall(header)
         entries = [line.split() for _, line in lines[1:]]
     places = [f"line {number}" for number, _ in lines[1:]]
+    if separator and not titles[-1].strip() and all(row and not row[-1].strip() for row in entries):
+        titles, entries = titles[:-1], [row[:-1] for row in entries]  # a delimiter ends each line
     rows = list[tuple[str, list[object]]]()
     for place, row in zip(places, entries, strict=True):
         if len(row) != len(titles):
-            raise StoreError(f"{path}: {place}: has {len(row)} entries; the first line names {len(titles)} columns")
-        rows.append((place, [entry.strip() for entry in row]))
+            hint = "; write decimal points" if separator == "," and len(row) == 2 * len(titles) else ""
+            raise StoreError(
+                f"{path}: {place}: has {len(row)} entries; the first line names {len(titles)} columns{hint}"
+            )
+        rows.append((place, [_with_point(entry.strip()) for entry in row]))
     return _titled(str(path), titles, rows)._replace(file=path)
+
+
+def _with_point(entry: str) -> str:
+    """Return a number with a decimal point in place of a comma; what else an entry is stays."""
+    match = _DECIMAL_COMMA.fullmatch(entry)
+    return f"{match[1]}.{match[2]}" if match else entry
 
 
 def _lines(path: Path) -> Iterator[tuple[int, str]]:

@@ -64,6 +64,7 @@ class Model:
         """Return the law with these parameters; RoughmdrError where there is none."""
         scene, quantity = self.scene(x), self.curve.quantity
         names = [quantity] if scene.nominal_area is None else [quantity, "model_error_curve"]
+        names += ["stiffness"] * (self.curve.control == "remote")
         law = simulate_realization(scene, self._path_in(scene, x), 0, names, "expected")
         if not np.isfinite(law.variables[quantity]).all():
             raise OutOfRange("the expected law is not finite")
@@ -140,6 +141,19 @@ class Model:
         """Return by how much the measured force stretches the spring of the machine [m]."""
         area = scene.nominal_area if self.curve.quantity == "pressure" else None
         return self.curve.load * (1.0 if area is None else area) / (scene.path.machine_stiffness or np.inf)
+
+    def on_machine(self, x: Floats, law: LoadSeparation, change: Floats) -> Floats:
+        """Return the change of the load at the measured control that a ``change`` at given separation makes.
+
+        A spring of stiffness k gives way: contacts of stiffness S leave k/(k + S) of it.
+        """
+        if self.curve.control == "separation":
+            return change
+        spring, contacts = self.scene(x).path.machine_stiffness, law.variables["stiffness"]
+        if spring is None:
+            return change
+        stiffness = np.where(contacts > -spring, contacts, np.inf)  # they jump there, and say nothing
+        return np.asarray(change * spring / (spring + stiffness))
 
     def _offset(self, x: Floats) -> float:
         """Return what is added to the measured control [m]."""

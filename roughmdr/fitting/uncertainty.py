@@ -12,13 +12,14 @@ from roughmdr.numerics.arguments import Floats
 _LEVEL = 0.95
 _LEAST_SLOPE = 1e-6  # of the largest: a parameter, or a combination, that changes the law by less is not known at all
 _LEAST_FREEDOM = 1e-6  # of a step: one that fits whatever it measures says nothing of the noise
+_UNKNOWN = 10.0  # standard error of x along a combination that is not known at all, however small the noise
 
 
 class Uncertainty(NamedTuple):
     """How well the sought numbers x of a fit are known."""
 
     influence: Floats
-    """By how much each standard deviation of each step moves each parameter, [parameter, step]."""
+    """How far a standard deviation of each step moves each parameter, [parameter, step]; last, what no step tells."""
     by_even_noise: Floats
     """Likewise of noise that is even; it says what the curve tells apart, however small its noise."""
     slopes: Floats
@@ -70,9 +71,12 @@ def uncertainty(model: Model, found: Found) -> Uncertainty:
     lengths = np.linalg.norm(slopes, axis=0)
     if not lengths.max() > 0.0:
         keys = ", ".join(parameter.key for parameter in model.parameters)
-        raise OutOfRange(f"free: {keys}: changes nothing along the measured path, where the scene has no contact")
+        negative = bool(model.curve.load.sum() < 0.0)
+        sign = f"; {model.curve.quantity} is mostly negative, and compression is positive" * negative
+        raise OutOfRange(f"free: {keys}: changes nothing along the measured path, where the scene has no contact{sign}")
     lengths = np.maximum(lengths, _LEAST_SLOPE * lengths.max())
     left, sizes, right = np.linalg.svd(slopes / lengths, full_matrices=False)
+    _check_enough(model, slopes / lengths)
     inverse = right.T @ (left / np.maximum(sizes, _LEAST_SLOPE * sizes[0])).T / lengths[:, None]
     probability = 0.5 * (1.0 + _LEVEL)
     if model.curve.error is None:
@@ -81,7 +85,25 @@ def uncertainty(model: Model, found: Found) -> Uncertainty:
         quantile = np.asarray(t.ppf(probability, _degrees_of_freedom(inverse / rest, left)))
     else:
         influence, quantile = inverse, np.full(found.x.size, norm.ppf(probability))
+    unknown = right[sizes < _LEAST_SLOPE * sizes[0]] / lengths
+    unknown *= _UNKNOWN / np.abs(unknown).max(axis=1, keepdims=True)
+    influence = np.hstack([influence, unknown.T])
     return Uncertainty(influence, inverse, slopes, np.asarray(quantile), _shift(model, found, inverse))
+
+
+def _check_enough(model: Model, slopes: Floats) -> None:
+    """OutOfRange where as many steps or fewer depend on the parameters as there are of these, which then fit whatever
+    noise the steps have; the errors of the load tell it.
+    """
+    deciding = int(np.sum(np.linalg.norm(slopes, axis=1) > _LEAST_SLOPE))
+    if model.curve.error is None and deciding <= slopes.shape[1]:
+        keys = ", ".join(parameter.key for parameter in model.parameters)
+        them = "them" if slopes.shape[1] > 1 else "it"
+        raise OutOfRange(
+            f"free: {keys}: only {deciding} of {len(slopes)} points depend on {them}, "
+            f"too few to tell the noise; measure more points in contact, free less, or give "
+            f"{model.curve.quantity}_error"
+        )
 
 
 def _degrees_of_freedom(weights: Floats, left: Floats) -> Floats:
@@ -102,4 +124,5 @@ def _shift(model: Model, found: Found, inverse: Floats) -> Floats | None:
     curve = law.model_error.curve
     if not np.isfinite(curve).all():
         return None
-    return np.abs(inverse @ (curve * law.variables[model.curve.quantity] / model.curve.weight))
+    error = curve * law.variables[model.curve.quantity]  # at given separation
+    return np.abs(inverse @ (model.on_machine(found.x, law, error) / model.curve.weight))

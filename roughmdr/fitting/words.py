@@ -1,10 +1,13 @@
 """The text of ``roughmdr fit``."""
 
+import math
 from collections.abc import Iterator
 
 from roughmdr.schema.units import format_quantity
 from roughmdr.schema.wording import format_seconds, format_table
 from roughmdr.storage.labelled import Labelled
+
+_DIGITS = 4, 12  # of a fitted number: least and most
 
 
 def describe_fit(fit: Labelled) -> str:
@@ -50,8 +53,17 @@ def _with_interval(fit: Labelled, name: str) -> str:
     low, high = (_number(fit, f"{name}_{end}") for end in ("low", "high"))
     if is_open(fit, name):
         return f"{format_quantity(_number(fit, name), unit)}, not determined"
-    value = format_quantity(_number(fit, name), unit, error=_number(fit, f"{name}_standard_error"))
-    return f"{value} ({format_quantity(low, unit, to=high)})"
+    number, error = _number(fit, name), _number(fit, f"{name}_standard_error")
+    digits = _digits(number, error)
+    value = format_quantity(number, unit, error=error, digits=digits)
+    return f"{value} ({format_quantity(low, unit, to=high, digits=digits)})"
+
+
+def _digits(number: float, error: float) -> int:
+    """Return how many digits of a number are shown: two of its standard error, and four at least."""
+    if not (number and error > 0.0):
+        return _DIGITS[0]
+    return min(max(math.floor(math.log10(abs(number))) - math.floor(math.log10(error)) + 2, _DIGITS[0]), _DIGITS[1])
 
 
 def is_open(fit: Labelled, name: str) -> bool:

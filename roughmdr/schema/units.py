@@ -157,20 +157,22 @@ def example_of_unit(dimension: str) -> str:
     return _EXAMPLES.get(dimension, "").partition(",")[0]
 
 
-def format_quantity(value: float, unit: str, *, to: float | None = None, error: float | None = None) -> str:
+def format_quantity(
+    value: float, unit: str, *, to: float | None = None, error: float | None = None, digits: int = _DIGITS
+) -> str:
     """Format a quantity in SI with a prefix: "1.234 uN", with its error "1.23 ± 0.05 uN", as a range "0.2 to 1.5 um".
 
-    ``unit`` is that of ``value``, as in a scene or in a result; ``to`` is the other end of the range. A single quantity
-    is read again by ``quantity``.
+    ``unit`` is that of ``value``, as in a scene or in a result; ``to`` is the other end of the range; ``digits`` are
+    those of both. A single quantity is read again by ``quantity``.
     """
     spelled = _SPELLED.get(unit, unit)
     given = [abs(number) for number in (value, to, error) if number is not None and math.isfinite(number)]
     largest = max(given, default=0.0)
     exponent = 0 if spelled == DIMENSIONLESS else _exponent(largest, _POWERS.get(spelled, 1))
     power = exponent * _POWERS.get(spelled, 1)
-    text = _plain(value, power, _DIGITS)
+    text = _plain(value, power, digits)
     if to is not None:
-        text += f" to {_plain(to, power, _DIGITS)}"
+        text += f" to {_plain(to, power, digits)}"
     if error is not None and math.isfinite(error):
         text += f" ± {_plain(error, power, _ERROR_DIGITS)}"
     slash = "/" if spelled.startswith("/") else ""

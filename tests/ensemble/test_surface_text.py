@@ -129,6 +129,17 @@ def test_columns_are_read_in_any_order(tmp_path: Path, suffix: str, delimiter: s
     check(read_map(path))
 
 
+@pytest.mark.parametrize("titles", ["x/um;y/um;z/nm", "X_um;Y_um;Height_nm", "X (µm);Y (µm);Height (nm)"])
+def test_units_in_titles_are_read_however_they_are_spelled(tmp_path: Path, titles: str) -> None:
+    x, y = np.meshgrid(STEP * np.arange(NX), STEP * np.arange(NY), indexing="ij")
+    points = np.column_stack([x.ravel(), y.ravel(), HEIGHT.ravel()])
+    path = tmp_path / "map.csv"
+    path.write_text(f"{titles}\n" + "\n".join(";".join(map(str, point)) for point in points))
+    check(read_map(path))
+    with pytest.raises(rm.RoughmdrError, match="the file says itself that heights are in nm"):
+        read_map(path, unit="um")
+
+
 def test_points_that_are_not_there_are_undefined_and_scattered_ones_refused(tmp_path: Path) -> None:
     path = tmp_path / "map.xyz"
     i, j = (each.ravel() for each in np.indices((NX, NY)))

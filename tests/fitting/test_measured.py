@@ -39,6 +39,17 @@ def test_any_spelling_is_read(tmp_path: Path, header: str, separator: str, scale
     assert curve.error is None
 
 
+@pytest.mark.parametrize(("separator", "end"), [(";", ""), ("\t", "\t"), (";", ";")])
+def test_decimal_commas_and_delimiters_at_the_end(tmp_path: Path, separator: str, end: str) -> None:
+    rows = [separator.join(("separation [um]", "force [mN]")) + end]
+    rows += [separator.join(f"{number:.1f}".replace(".", ",") for number in row) + end for row in ROWS]
+    path = tmp_path / "curve.csv"
+    path.write_bytes(("\ufeff" + "\r\n".join(rows) + "\r\n").encode())
+    curve = read_measured(path, 1)
+    np.testing.assert_allclose(curve.values, 1e-6 * np.array(ROWS)[:, 0], rtol=1e-15)
+    np.testing.assert_allclose(curve.load, 1e-3 * np.array(ROWS)[:, 1], rtol=1e-15)
+
+
 def test_errors_weight_the_points() -> None:
     frame = pd.DataFrame(ROWS, columns=["separation", "force"]).assign(**{"force_error [mN]": 2})
     curve = read_measured(frame, 1)
@@ -52,6 +63,8 @@ def test_errors_weight_the_points() -> None:
         ("separation,force\n1,2\n2,inf\n3,1\n4,1\n", r"line 3: force = 'inf': expected a number in N"),
         ("separation,force\n# x\n1,2\n2,\n3,1\n4,1\n", r"line 4: force = '': expected a number in N"),
         ("separation,force\n1,2\n2\n3,1\n4,1\n", r"line 3: has 1 entries; the first line names 2 columns"),
+        ("separation,force\n1,5,2,0\n", r"line 2: has 4 entries; the first line names 2 columns; write decimal points"),
+        ("separation;force\n1.234,5;2\n", r"line 2: separation = '1.234,5': "),
         ("separation,force\n1,2\n2,1\n3,1\n", r"has 3 rows; at least 4 are needed"),
         ("separation,force,time\n1,2,3\n", r"column 'time': not known; it can be separation, force, force_error"),
         ("separation,force,force\n1,2,3\n", r"column 'force': is given twice"),

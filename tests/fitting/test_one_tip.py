@@ -1,5 +1,6 @@
 """Fits of one tip on a half-space: as scipy finds them with the textbook's law, at any scale, with honest intervals."""
 
+import re
 from itertools import product
 from typing import Any
 
@@ -10,6 +11,9 @@ from measurements import inside
 from tips import COMBINATIONS, MODULUS, NOISES, OFFSET, WORK, Tip
 
 import roughmdr as rm
+from roughmdr.errors import OutOfRange
+from roughmdr.fitting.words import describe_fit
+from roughmdr.storage.labelled import Labelled
 
 SCALES = [(1e-9, 1e9), (1e-7, 1e6), (1e-5, 1e3), (1e-3, 1e5)]  # depth [m] and modulus [Pa]
 CASES = [(kind, free) for kind, combinations in COMBINATIONS.items() for free in combinations]
@@ -72,6 +76,59 @@ def test_behind_a_cantilever() -> None:
     fit = rm.fit(measured, scene, [MODULUS, WORK, OFFSET], set={MODULUS: 1.4e6})
     assert all(inside(fit, key, value) for key, value in tip.true(-4e-8).items())
     assert "remote" in fit.coords
+
+
+def test_the_error_of_the_law_moves_the_modulus_alike_behind_a_spring() -> None:
+    """The modulus takes up an error that is one of all forces at given separation, however soft the spring is."""
+    tip, depth = Tip("hertz", 1e-7, 2e6), np.linspace(-1e-7, 1e-7, 60)
+    force = tip.law(2e6, 0.0, depth)
+    noise = 1e-3 * force.max() * np.random.default_rng(1).standard_normal(force.size)
+    frame = pd.DataFrame({"separation": -depth, "force": force + noise})
+    expected = number(rm.fit(frame, tip.scene(), [MODULUS, OFFSET]), MODULUS, "_model_error")
+    for spring in (0.1, 10.0):  # of 2 E* times the scale
+        stiffness = spring * 2e6 * 1e-7
+        scene = tip.scene(path={"machine_stiffness": stiffness})
+        frame = pd.DataFrame({"remote": -depth - force / stiffness, "force": force + noise})
+        fit = rm.fit(frame, scene, [MODULUS, OFFSET])
+        assert number(fit, MODULUS, "_model_error") == pytest.approx(expected, rel=0.02)
+
+
+@pytest.mark.parametrize("touching", [1, 2, 3])
+def test_no_more_points_than_parameters_tell_no_error(touching: int) -> None:
+    """Points before the contact agree with any law: they are none of those that tell the noise."""
+    tip = Tip("hertz", 1e-7, 2e6)
+    depth = np.concatenate([np.linspace(-2e-7, -1e-8, 6), np.linspace(4e-8, 1e-7, touching)])
+    frame = pd.DataFrame({"separation": -depth, "force": tip.law(2.1e6, 0.0, depth)})
+    if touching < 3:
+        with pytest.raises(OutOfRange, match=f"only {touching} of {6 + touching} points depend on them"):
+            rm.fit(frame, tip.scene(), [MODULUS, OFFSET])
+    else:
+        assert inside(rm.fit(frame, tip.scene(), [MODULUS, OFFSET]), MODULUS, 2.1e6)
+
+
+def test_compression_of_the_other_sign_is_told() -> None:
+    tip, depth = Tip("hertz", 1e-7, 2e6), np.linspace(-1e-7, 1e-7, 30)
+    frame = pd.DataFrame({"separation": -depth, "force": -tip.law(2e6, 0.0, depth)})
+    with pytest.raises(OutOfRange, match="force is mostly negative, and compression is positive"):
+        rm.fit(frame, tip.scene(), [MODULUS, OFFSET])
+
+
+def test_what_no_point_tells_is_not_known_without_noise() -> None:
+    tip, depth = Tip("hertz", 1e-7, 2e6), np.linspace(-1e-7, 1e-7, 30)
+    frame = pd.DataFrame({"separation": -depth, "force": tip.law(2e6, 0.0, depth)})
+    fit = rm.fit(frame, tip.scene(), [MODULUS, "asperities.radius", OFFSET], set={MODULUS: 1e6})
+    assert number(fit, MODULUS, "_standard_error") > 2e6
+    assert number(fit, OFFSET, "_standard_error") < 1e-12
+    assert describe_fit(Labelled.of(fit)).count("not determined") == 2
+
+
+def test_an_offset_far_away_is_shown_to_its_error() -> None:
+    tip, depth = Tip("hertz", 1e-7, 2e6), np.linspace(-1e-7, 1e-7, 60)
+    force = tip.law(2e6, 0.0, depth)
+    noise = 1e-3 * force.max() * np.random.default_rng(1).standard_normal(force.size)
+    fit = rm.fit(pd.DataFrame({"separation": -depth - 37e-6, "force": force + noise}), tip.scene(), [OFFSET])
+    low, high = re.search(r"\(([\d.]+) to ([\d.]+) um\)", describe_fit(Labelled.of(fit))).groups()  # type: ignore[union-attr]
+    assert 0.9 < (float(high) - float(low)) / 1e6 / (number(fit, OFFSET, "_high") - number(fit, OFFSET, "_low")) < 1.1
 
 
 @pytest.mark.large

@@ -16,9 +16,14 @@ _LEAST_SHARE = 0.5
 """Share of the points of a grid that a file must hold: instruments leave out those that they could not measure."""
 _OFF_GRID = 0.2
 """Distance of a coordinate from the grid at most, in spacings: it may be rounded to one digit of a spacing."""
-# Title of a column: x, y or z, with its unit in brackets. A comment with the units of all coordinates, or of heights.
-_TITLE = re.compile(r"\s*\"?(?:pos\w*\s*)?([xyz])(?:\b|_)[^\[(]*(?:[\[(]\s*([^\])]*?)\s*[\])])?.*", re.IGNORECASE)
+_TITLE = re.compile(
+    r"\s*\"?(?:pos\w*\s*)?([xyz]|height)"
+    r"(?:_(nm|[uµμ]m|mm|m)\b|(?:\b|_)[^\[(/]*(?:[\[(]\s*([^\])]*?)\s*[\])]|/\s*([^\s\"]+))?).*",
+    re.IGNORECASE,
+)
+"""Title of a column with its unit: "x [um]", "x (um)", "x/um" or "x_um"."""
 _UNITS = re.compile(r"(lateral|xy|value|z)[ -]units?\s*[:=]\s*(\S+)", re.IGNORECASE)
+"""Unit of all coordinates, or of the heights, in a comment."""
 
 
 def is_of_points(table: TextTable) -> bool:
@@ -101,9 +106,9 @@ def _titles(table: TextTable) -> tuple[tuple[str | None, str | None], tuple[int,
     for _, comment in table.comments[::-1]:
         words = re.split(r"[;,\t]|\s+(?=[xyzXYZ]\b)", comment.strip())
         found = [match for match in map(_TITLE.fullmatch, filter(None, words)) if match]
-        names = [match[1].lower() for match in found]
+        names = ["z" if match[1].lower() == "height" else match[1].lower() for match in found]
         if sorted(names) == ["x", "y", "z"]:
-            of = {match[1].lower(): match[2] for match in found}
+            of = {name: match[2] or match[3] or match[4] for name, match in zip(names, found, strict=True)}
             if of["x"] != of["y"]:
                 raise RoughmdrError(f"x is in {of['x']}, y in {of['y']}; both must be in one unit")
             return (of["x"] or lateral, of["z"] or height), (names.index("x"), names.index("y"), names.index("z"))
