@@ -12,6 +12,7 @@ import numpy as np
 from roughmdr.errors import RoughmdrError
 from roughmdr.numerics.arguments import Floats
 from roughmdr.schema.quantities import EntryError, Quantity
+from roughmdr.schema.units import format_quantity
 
 _ROW_DISTANCE = {"square": 1.0, "hexagonal": math.sqrt(0.75)}  # distance of rows, in pitches
 _PERIOD = {"square": 1, "hexagonal": 2}  # rows after which the lattice repeats
@@ -63,23 +64,32 @@ def _oblong(kind: str, count: int, rows: int) -> float:
 def with_sites_counted(table: Any) -> Any:
     """Return a table [asperities] that has a pitch with the sites on its patch as count, and the patch that they fill.
 
-    EntryError where the pitch does not go with another key.
+    EntryError where the pitch does not go with count or density, or with the patch.
     """
     if not isinstance(table, dict) or table.get("pitch") is None:
         return table
     pitch, kind = table["pitch"], table.get("placement")
+    if kind not in LATTICES or table.get("vacancies"):  # which ``check_pitch`` tells, after misspelt keys
+        return table
     if given := [key for key in ("count", "density") if table.get(key) is not None]:
         raise EntryError("pitch", pitch, f"does not go with {given[0]}: the sites on the patch are counted")
-    if kind not in LATTICES or table.get("vacancies"):
-        raise EntryError("pitch", pitch, f"goes with placement = {' or '.join(map(repr, LATTICES))}, without vacancies")
     try:
         length, patch = (Quantity("m", above=0.0)(table.get(key)) for key in ("pitch", "patch"))
     except RoughmdrError:  # which their fields tell
         return table
+    if length > patch:
+        raise EntryError("pitch", pitch, f"must be at most the side of the patch, {format_quantity(patch, 'm')}")
     if not patch / length < _MOST_ON_A_SIDE:
         raise EntryError("pitch", pitch, f"puts more than {_MOST_ON_A_SIDE} sites on a side of the patch")
     count, side = _filled(kind, length, patch)
     return {**table, "count": count, "patch": side}
+
+
+def check_pitch(pitch: float | None, placement: str, vacancies: bool) -> None:
+    """Raise EntryError where a pitch is given for no lattice that is full."""
+    if pitch is not None and (placement not in LATTICES or vacancies):
+        names = " or ".join(map(repr, LATTICES))
+        raise EntryError("pitch", format_quantity(pitch, "m"), f"goes with placement = {names}, without vacancies")
 
 
 def _filled(kind: str, pitch: float, patch: float) -> tuple[int, float]:

@@ -75,7 +75,10 @@ REFUSED: dict[str, tuple[dict[str, Any], str]] = {
     "much": (asking(1.5), r"accuracy\.relative.*at most 1"),
     "not a number": (asking(math.nan), r"accuracy\.relative"),
     "method": (asking(0.1, "guessed"), r"accuracy\.method"),
-    "unfit": (asking(0.1, "expected", asperities=LEVEL), r"accuracy\.method: cannot be 'expected': all heights"),
+    "unfit": (
+        asking(0.1, "expected", asperities={**FEW, "correlation": {"radius": 1.0}}),
+        r"accuracy\.method: cannot be",
+    ),
 }
 
 
@@ -113,11 +116,11 @@ def test_where_the_expected_law_is_not_right_enough_asperities_are_drawn(keep: s
     assert "expected" not in found.attrs["accuracy"]
 
 
-def test_where_all_heights_are_the_same_asperities_are_drawn() -> None:
-    found = go(asking(0.1, None, asperities=LEVEL))
-    assert methods(found) == ["stratified"]
-    still = {**LEVEL, "radius": "50 um", "count": 10}
-    assert go(asking(1e-9, None, asperities=still)).realization_count == FIRST
+def test_equal_asperities_of_one_height_are_not_drawn() -> None:
+    assert methods(go(asking(0.1, None, asperities=LEVEL))) == ["stratified"]
+    found = go(asking(1e-9, None, asperities={**LEVEL, "radius": "50 um", "count": 10}))
+    assert methods(found) == ["expected"]
+    assert found.realization_count == 1
 
 
 def test_each_cell_has_the_method_that_fits_it() -> None:

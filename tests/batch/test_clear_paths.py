@@ -205,9 +205,10 @@ def test_in_other_units_the_path_scales() -> None:
 
 
 def test_without_an_expected_law_the_stop_is_that_of_a_stratified_realisation() -> None:
-    asperities = {**ASPERITIES, "height": "1 um"}
+    asperities = {**ASPERITIES, "correlation": {"radius": 1.0}}
     result = rm.run(clear({"contact_fraction": 0.02}, asperities=asperities, adhesion=None))
-    assert result.contact_fraction[:, 29].to_numpy() == pytest.approx(0.02, rel=0.01)
+    drawn = result.contact_fraction[:, 29].to_numpy()
+    assert abs(drawn.mean() - 0.02) < 4.0 * drawn.std(ddof=1) / np.sqrt(drawn.size)
     stratified = rm.run(
         clear({"contact_fraction": 0.02}, asperities=asperities, adhesion=None, batch={"estimator": "stratified"})
     )

@@ -368,9 +368,9 @@ def test_numbers_that_were_changed_are_refused(keep: str, calls: Calls, out: Pat
     data.to_netcdf(out)  # as it was, through other hands
     go(table, out)
     assert not calls.taken()
-    name = "force" if keep == "curves" else "force_mean"
+    names = ["force"] if keep == "curves" else [f"force_{statistic}" for statistic in ("mean", "sem", "min", "max")]
     out.unlink()
-    data.assign({name: data[name] * 2.0}).to_netcdf(out)
+    data.assign({name: data[name] * 2.0 for name in names}).to_netcdf(out)
     with pytest.raises(rm.StoreError, match="numbers are not those that were written"):
         go(table, out)
     out.unlink()

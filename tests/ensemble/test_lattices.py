@@ -82,6 +82,7 @@ def test_vacancies_are_made_only_if_asked_for() -> None:
         ({"placement": "random", "pitch": "9 um"}, "pitch = '9 um': goes with placement = 'square' or 'hexagonal'"),
         ({"placement": "square", "pitch": "1 nm", "patch": "1 m"}, "puts more than 30000 sites on a side"),
         ({"placement": "square", "pitch": "1 kg"}, "pitch"),
+        ({"placement": "square", "pitch": "2 mm", "patch": "1 mm"}, "must be at most the side of the patch, 1 mm"),
         ({"placement": "random", "count": 5, "vacancies": True}, 'vacancies = True: goes with placement = "hexagonal"'),
         ({"placement": "square"}, "needs count, the pitch of a lattice, or a density"),
     ],

@@ -70,6 +70,15 @@ BASES: dict[str, dict[str, Any]] = {
         },
         "batch": {"estimator": "stratified"},
     },
+    "a lattice": {
+        **SCENE,
+        "asperities": {
+            **{key: value for key, value in ASPERITIES.items() if key != "count"},
+            "placement": "hexagonal",
+            "pitch": "30 um",
+        },
+    },
+    "vacancies": {**SCENE, "asperities": {**ASPERITIES, "placement": "hexagonal", "vacancies": True}},
     "moments": {**SCENE, "asperities": {"source": "nayak", "patch": "0.2 mm", "m0": "1 um^2", "m2": 0.02, "m4": 5e9}},
     **{
         name: {**SCENE, "asperities": {"source": "nayak", "patch": "0.2 mm", **_WAVES, name: amplitude}}
@@ -132,6 +141,7 @@ BASES: dict[str, dict[str, Any]] = {
             "size": ["10 um", "10 um"],
             "unit": "nm",
             "channel": "height",
+            "outliers": "undefined",
             "detrend": "plane",
             "periodic": False,
             "cutoff": "1 um",

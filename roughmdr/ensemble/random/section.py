@@ -10,7 +10,7 @@ import numpy as np
 from pydantic import BeforeValidator, model_validator
 
 from roughmdr.ensemble.ensemble import Ensemble
-from roughmdr.ensemble.lattice import LATTICES, with_sites_counted
+from roughmdr.ensemble.lattice import LATTICES, check_pitch, with_sites_counted
 from roughmdr.ensemble.nodes import Nodes, Rule
 from roughmdr.ensemble.patch_source import MAX_COUNT, PatchSource
 from roughmdr.ensemble.random.distribution import Distribution
@@ -58,6 +58,7 @@ class RandomAsperities(PatchSource):
     def _check_parameters_and_count(self) -> "RandomAsperities":
         if self.shared_profile is None:
             SHAPES[self.shape].parameter_set(set(self.distributions))
+        check_pitch(self.pitch, self.placement, self.vacancies)
         if self.count is None and self.density is None:
             raise RoughmdrError(
                 "needs count, the pitch of a lattice, or a density from which the number in each realisation is drawn"
