@@ -8,7 +8,7 @@ import numpy as np
 from roughmdr.aggregate import loop, totals
 from roughmdr.aggregate.detachment import detachments
 from roughmdr.aggregate.law import PER_AREA, LoadSeparation, effective_number
-from roughmdr.aggregate.mean_field import couple
+from roughmdr.aggregate.mean_field import couple, of_independent
 from roughmdr.aggregate.neighbours import are_few, neighbours_error
 from roughmdr.aggregate.pull_off import pull_off_of
 from roughmdr.aggregate.tabor import jkr_validity
@@ -69,14 +69,11 @@ def compute(
 
     def radius_at(separation: float) -> Floats:
         there = LoadingPath.along(np.array([separation]), unload=False, adhesive=adhesion.work > 0.0)
-        return sums(there, {totals.AREA})[1]
+        _, (radius, _), _ = sums(there, {totals.AREA})
+        return np.asarray(radius)
 
     if coupling := coupling_in(ensemble, interaction, effective_modulus):
-
-        def independent(separation: Floats) -> tuple[Floats, Floats]:
-            found, _, _ = sums(LoadingPath(separation, no_memory(separation)), {totals.FORCE, totals.STIFFNESS})
-            return found[totals.FORCE], found[totals.STIFFNESS]
-
+        independent = of_independent(law, ensemble.height, columns, effective_modulus, adhesion)
         found = shift(independent, path.separation, coupling)
         shifted = LoadingPath(found.separation, no_memory(found.separation))
         total, (radius, force), visits = sums(shifted, rows | {totals.STIFFNESS})

@@ -13,9 +13,10 @@ from roughmdr.aggregate.tabor import jkr_validity
 from roughmdr.ensemble.ensemble import Ensemble
 from roughmdr.errors import SceneError
 from roughmdr.interaction.settings import Interaction
+from roughmdr.interaction.totals import CROWDING
 from roughmdr.kernels.adhesion import Adhesion
 from roughmdr.loading.machine import MachinePath
-from roughmdr.loading.path import LoadingPath
+from roughmdr.loading.path import LoadingPath, branches
 from roughmdr.loading.pull_off import PullOff
 from roughmdr.model_error import Assumptions, Givens
 from roughmdr.model_error.conductance import coupled_conductance_error
@@ -76,7 +77,8 @@ def law_of_coupled(
 ) -> LoadSeparation:
     """Return the law of asperities that feel each other in pairs; SceneError where a variable is not to be had."""
     separation = path.separation
-    found = sum_coupled(ensemble, separation, effective_modulus, interaction, names, adhesion.work)
+    judged = _judged(ensemble, names)
+    found = sum_coupled(ensemble, separation, effective_modulus, interaction, judged, adhesion.work)
     return _law(ensemble, found, separation, effective_modulus, adhesion, names)
 
 
@@ -95,9 +97,15 @@ def law_on_machine(
     """
     from roughmdr.interaction.jkr.machine_path import solve_on_machine
 
-    along = solve_on_machine(ensemble, path, effective_modulus, adhesion.work, interaction, set(names), clear)
+    judged = set(_judged(ensemble, names))
+    along = solve_on_machine(ensemble, path, effective_modulus, adhesion.work, interaction, judged, clear)
     found = _adhering(ensemble, along.separation, interaction, along)
     return _law(ensemble, found, along.separation, effective_modulus, adhesion, names), along.separation
+
+
+def _judged(ensemble: Ensemble, names: list[str]) -> list[str]:
+    """Return the variables with what their error needs beside them; that of hills needs nothing."""
+    return names if ensemble.origin == "hills" else [*names, CROWDING]
 
 
 def _law(
@@ -190,8 +198,8 @@ def _adhering(ensemble: Ensemble, separation: Floats, interaction: Interaction, 
     found = _found(ensemble, separation, interaction, along, adhesive=True)
     error = found.error
     if ensemble.origin == "hills":
-        loading = np.arange(separation.size) <= int(np.argmin(np.nan_to_num(separation, nan=np.inf)))
         largest = float(np.nanmax(np.abs(found.total[totals.FORCE]), initial=0.0))
+        loading = branches(separation) == "loading"
         error = np.minimum(error + adhesive_hills_error(along.pull_offs, largest, loading), 1.0)
     return found._replace(
         error=error,

@@ -2,9 +2,26 @@
 
 import numpy as np
 
+from roughmdr.aggregate.loop import sum_over_asperities
 from roughmdr.aggregate.totals import CONDUCTANCE, ENERGY, ERROR, FORCE, STIFFNESS
-from roughmdr.interaction.mean_field import Shift
+from roughmdr.interaction.mean_field import ForceAndStiffness, Shift
+from roughmdr.kernels.adhesion import Adhesion
+from roughmdr.kernels.interface import Columns, Kernels
+from roughmdr.loading.staircase import no_memory
 from roughmdr.numerics.arguments import Floats
+
+
+def of_independent(
+    kernels: Kernels, height: Floats, columns: Columns, effective_modulus: float, adhesion: Adhesion
+) -> ForceAndStiffness:
+    """Return force and stiffness of independent asperities without memory as a function of separations; E* [Pa]."""
+    given = kernels, height, columns, effective_modulus, adhesion
+
+    def law(separation: Floats) -> tuple[Floats, Floats]:
+        found, _, _ = sum_over_asperities(*given, separation, no_memory(separation), {FORCE, STIFFNESS})
+        return found[FORCE], found[STIFFNESS]
+
+    return law
 
 
 def couple(total: Floats, shift: Shift) -> None:

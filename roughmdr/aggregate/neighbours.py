@@ -20,7 +20,7 @@ _HALVINGS = 12
 
 def are_few(ensemble: Ensemble) -> bool:
     """Return whether asperities are so few that they stand on a half-space that is elsewhere at rest."""
-    return ensemble.origin == "asperities" and ensemble.height.size <= FEW
+    return ensemble.origin == "asperities" and not ensemble.goes_on and ensemble.height.size <= FEW
 
 
 def neighbours_error(

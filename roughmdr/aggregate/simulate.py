@@ -1,6 +1,6 @@
 """The law of an ensemble along a path of the flat, or of the machine that moves it."""
 
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 
 import numpy as np
 
@@ -8,12 +8,13 @@ from roughmdr.aggregate.compute import check_asked, compute
 from roughmdr.aggregate.detachment import clear_separation
 from roughmdr.aggregate.law import LoadSeparation
 from roughmdr.aggregate.machine_loss import machine_loss
+from roughmdr.aggregate.mean_field import of_independent
 from roughmdr.aggregate.preload import Specimen, to_preload
 from roughmdr.aggregate.tabor import jkr_validity
 from roughmdr.aggregate.under_machine import separations_of
 from roughmdr.ensemble.ensemble import Ensemble
 from roughmdr.errors import OutOfRange
-from roughmdr.interaction.mean_field import coupling_in, shift
+from roughmdr.interaction.mean_field import ForceAndStiffness, coupling_in, shift
 from roughmdr.interaction.settings import Interaction
 from roughmdr.kernels.adhesion import Adhesion
 from roughmdr.kernels.choose import choose
@@ -117,14 +118,18 @@ def _separations(
     adhesion = adhesion.resolved(validity.jkr_error)
     kernels = choose(ensemble.shape, adhesion, columns.params)
 
+    given = kernels, ensemble.height, columns, effective_modulus, adhesion
+
     def independent(machine: Machine) -> tuple[Floats, list[Jump]]:
-        given = kernels, ensemble.height, columns, effective_modulus, adhesion
         return separations_of(*given, machine, path.demand, jumps=jumps)
 
     if interaction is None or not ensemble.height.size:
         return independent(path.machine)
     if interaction.model == "mean_field":
-        return _under_mean_field(ensemble, path, effective_modulus, interaction, independent), []
+        coupling = coupling_in(ensemble, interaction, effective_modulus)
+        if path.machine.is_dead_load:
+            return np.asarray(independent(path.machine)[0] + coupling * path.demand), []  # the force is known
+        return _under_mean_field(of_independent(*given), path, coupling), []
     from roughmdr.aggregate.coupled import response_of_coupled
 
     law = response_of_coupled(ensemble, effective_modulus, interaction)
@@ -133,29 +138,11 @@ def _separations(
     return steady_passage.separations_of(law, path.demand, path.machine, highest, depth, error), []
 
 
-def _under_mean_field(
-    ensemble: Ensemble,
-    path: MachinePath,
-    effective_modulus: float,
-    interaction: Interaction,
-    independent: Callable[[Machine], tuple[Floats, list[Jump]]],
-) -> Floats:
-    """Return the separation at each step of a machine; ``independent`` has that of independent asperities.
+def _under_mean_field(independent: ForceAndStiffness, path: MachinePath, coupling: float) -> Floats:
+    """Return the separation at each step of a machine, from the law of independent asperities and c [m/N].
 
     A mean field c in series with a spring 1/k is a softer spring: F = F0(h + c F) with h = X + F/k is
-    F0(X + (c + 1/k) F). Under a dead load the force is known.
+    F0(X + (c + 1/k) F).
     """
-    coupling = coupling_in(ensemble, interaction, effective_modulus)
-    if path.machine.is_dead_load:
-        return np.asarray(independent(path.machine)[0] + coupling * path.demand)
-
-    def law(separation: Floats) -> tuple[Floats, Floats]:
-        along = LoadingPath.along(separation, unload=False, adhesive=False)
-        names = ["force", "stiffness"]
-        found = compute(
-            ensemble, along, effective_modulus=effective_modulus, adhesion=Adhesion(), variables=names
-        ).variables
-        return found["force"], found["stiffness"]
-
-    found = shift(law, path.demand, coupling + path.machine.compliance)
+    found = shift(independent, path.demand, coupling + path.machine.compliance)
     return np.asarray(path.demand + path.machine.compliance * found.force)

@@ -75,6 +75,11 @@ class Ensemble:
         return "summits" if self.attrs.get("of_surface") else "asperities"
 
     @property
+    def goes_on(self) -> bool:
+        """Whether the surface goes on beyond the patch, however few asperities are on it (``Source.goes_on``)."""
+        return bool(self.attrs.get("goes_on", 0))
+
+    @property
     def resolution_error(self) -> float:
         """The relative error of the force that the resolution of a map causes [1]."""
         if self.origin == "hills":
@@ -193,8 +198,9 @@ def _nominal_area(attrs: dict[str, Any], sides: dict[str, float]) -> float | Non
 
 
 def _of_map(attrs: dict[str, Any]) -> dict[str, float | int | str]:
-    """Return whether the asperities are summits of a surface, the uncertainty of their radii, how far they keep apart,
-    and what is known of hills, as far as attributes have them; SceneError if these are not what they should be.
+    """Return whether the asperities are summits of a surface, whether it goes on, the uncertainty of their radii, how
+    far they keep apart, and what is known of hills, as far as attributes have them; SceneError if these are not what
+    they should be.
     """
     model = attrs.get("asperity_model", "hills")
     if model != "hills":
@@ -202,7 +208,7 @@ def _of_map(attrs: dict[str, Any]) -> dict[str, float | int | str]:
     try:
         return {name: attrs[name] for name in ("asperity_model",) if name in attrs} | {
             name: check_number(f"ensemble: attribute {name}", attrs[name], "1", zero=True)
-            for name in ("of_surface", "radius_uncertainty", "exclusion_distance", *_OF_HILLS)
+            for name in ("of_surface", "goes_on", "radius_uncertainty", "exclusion_distance", *_OF_HILLS)
             if name in attrs
         }
     except OutOfRange as error:

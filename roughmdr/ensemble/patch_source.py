@@ -108,10 +108,17 @@ class PatchSource(Source):
         return (self.patch, self.patch) if (lattice := self.lattice) is None else lattice.sides
 
     @property
+    def goes_on(self) -> bool:
+        return self.given_count is None or self.lattice is not None
+
+    @property
     def patch_attrs(self) -> dict[str, float | int | str]:
-        """The sides of the patch, and ``exclusion_distance`` where there is one, as attributes of ensembles."""
+        """The sides of the patch, and where they are above 0 ``goes_on`` and ``exclusion_distance``, as attributes of
+        ensembles.
+        """
         sides = {"patch": self.patch} if self.lattice is None else dict(zip(_SIDES, self.sides, strict=True))
-        return {**sides, **({"exclusion_distance": self.exclusion_distance} if self.exclusion_distance > 0.0 else {})}
+        others = {"goes_on": int(self.goes_on), "exclusion_distance": self.exclusion_distance}
+        return {**sides, **{name: value for name, value in others.items() if value > 0.0}}
 
     def positions(self, streams: Streams, count: int) -> dict[str, Floats]:
         """Return x and y [m] of ``count`` asperities; OutOfRange where they do not fit at the distance asked for."""

@@ -71,6 +71,14 @@ class Source(Section):
         """Whether the surface is one period of one without end."""
         return True
 
+    @property
+    def goes_on(self) -> bool:
+        """Whether the asperities are a sample of a surface that goes on beyond the patch, and not all that there are.
+
+        They are a sample where they have a density, or fill a lattice.
+        """
+        return False
+
     def height_map(self, seed: int, realization: int) -> HeightMap | None:
         """Return the map on which the asperities of a realisation were found; None where there is none."""
         return None

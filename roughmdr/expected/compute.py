@@ -120,11 +120,11 @@ def compute(
 
 def _neighbours_error(source: Source, total: Floats) -> Floats | None:
     """Return the error that few asperities at random make as independent ones, at each step; None of many."""
-    given, area = source.given_count, source.nominal_area
-    if given is None or given > FEW or area is None:
+    count, area = source.expected_count, source.nominal_area
+    if source.goes_on or count > FEW or area is None:
         return None
     contacts, side = total[COUNT], math.sqrt(area)
-    return error_of_few(total[AREA], contacts, contacts * (1.0 - 1.0 / given), mean_inverse_distance(side, side))
+    return error_of_few(total[AREA], contacts, contacts * (1.0 - 1.0 / count), mean_inverse_distance(side, side))
 
 
 @np.errstate(all="ignore")  # numbers that no float can hold are refused where the whole law is computed

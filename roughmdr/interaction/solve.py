@@ -20,7 +20,7 @@ from roughmdr.interaction.mesh import Mesh
 from roughmdr.interaction.newton import Coupling, Equilibrium, State, System, solve, total_stiffness
 from roughmdr.interaction.placed_asperities import Placed
 from roughmdr.interaction.settings import DEFAULT_ERROR, Boundary, Interaction
-from roughmdr.interaction.totals import Overlap, Step
+from roughmdr.interaction.totals import CROWDING, Overlap, Step
 from roughmdr.numerics.arguments import Floats
 from roughmdr.numerics.underway import each_step
 from roughmdr.shapes import SHAPES
@@ -86,7 +86,7 @@ class Candidates(Placed):
 class Flat:
     """A flat that goes from one separation to the next over coupled asperities, E* [Pa]; errors as ``solve_path``.
 
-    Stiffness and conductance where ``names`` asks for them.
+    Stiffness, conductance and ``CROWDING`` where ``names`` asks for them.
     """
 
     def __init__(self, ensemble: Ensemble, effective_modulus: float, interaction: Interaction, names: set[str]) -> None:
@@ -126,7 +126,7 @@ def solve_path(
     names: set[str],
     at: int | None = None,
 ) -> Coupled:
-    """Return coupled asperities at separations [m]; stiffness and conductance where ``names`` asks for them.
+    """Return coupled asperities at separations [m]; stiffness, conductance and crowding where ``names`` asks for them.
 
     Each contact is told where the flat is closest, or at step number ``at``. The ensemble has positions. SceneError
     where two asperities have one position; OutOfRange where a contact is not representable.
@@ -187,14 +187,16 @@ def _totals(candidates: Candidates, found: Equilibrium, h: float, modulus: float
     load = math.fsum(contacts.load.tolist())
     force = math.pi * modulus * length * length * load
     share, count = float(contacts.load[overlapping].sum()) / load, touching.size
-    near = crowding(
-        candidates.at[:count],
-        contacts.radius,
-        contacts.load,
-        candidates.sides,
-        candidates.emerging[:count],
-        candidates.interaction.order,
-    )
+    near = 0.0
+    if CROWDING in names:
+        near = crowding(
+            candidates.at[:count],
+            contacts.radius,
+            contacts.load,
+            candidates.sides,
+            candidates.emerging[:count],
+            candidates.interaction.order,
+        )
     overlap = Overlap(int(overlapping.sum()), share, near)
     rigidity = total_stiffness(candidates.system, found.state, h) if "stiffness" in names else 0.0
     conductance = 0.0

@@ -2,6 +2,9 @@
 
 from typing import NamedTuple
 
+CROWDING = "crowding"
+"""Asks for it among the names of variables."""
+
 
 class Overlap(NamedTuple):
     """Contacts that overlap a neighbour's, or are near to one."""
@@ -10,7 +13,7 @@ class Overlap(NamedTuple):
     share: float
     """Share of the force of contacts that overlap."""
     crowding: float = 0.0
-    """About the error of the force by contacts near to each other [1]."""
+    """About the error of the force by contacts near to each other [1]; 0 where it is not asked for."""
 
 
 class Step(NamedTuple):

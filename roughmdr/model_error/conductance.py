@@ -58,6 +58,8 @@ def conductance_error(assumptions: Assumptions, model_error: ModelError, contact
     """Return the largest error along a path, with the parts that are not by interaction; NaN without a nominal area."""
     if contact_fraction is None:
         return math.nan
+    if not (contact_fraction > 0.0).any():  # NaN at steps without an equilibrium
+        return 0.0
     interaction, known = assumptions.conductance_error, assumptions.neighbours_error
     if interaction is None:
         over_root = _INDEPENDENT[assumptions.origin]
@@ -66,4 +68,4 @@ def conductance_error(assumptions: Assumptions, model_error: ModelError, contact
             interaction = known * (over_root / OF_ORIGIN[assumptions.origin].estimate)
     largest = float(np.nanmax(interaction, initial=0.0))
     others = math.fsum(part for name, part in model_error.parts.items() if name != "interaction_error")
-    return min(largest + others, 1.0) if largest > 0.0 else 0.0
+    return min(largest + others, 1.0)

@@ -59,7 +59,7 @@ def adhesive_hills_error(pull_offs: float, largest: float, loading: NDArray[np.b
     """Return what JKR adds to the error of hills at each step, over the largest force [1].
 
     ``pull_offs`` is the sum of the pull-off forces of the contacts at closest approach, ``largest`` the largest force
-    [N]; ``loading`` are the steps up to there.
+    [N]; ``loading`` are the steps at which the flat comes down.
     """
     if not largest > 0.0:
         return np.zeros(loading.size)

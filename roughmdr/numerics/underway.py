@@ -17,22 +17,19 @@ class _Computation(NamedTuple):
     steps: int
 
 
-_by_thread: dict[int, _Computation] = {}
+_underway: list[tuple[int, _Computation]] = []
+"""By the thread of each, in the order in which they began."""
 
 
 @contextmanager
 def _noted(done: Callable[[], int], steps: int) -> Iterator[None]:
-    """Note a computation of this thread, in place of the one that it is a part of."""
-    thread = threading.get_ident()
-    outer = _by_thread.get(thread)
-    _by_thread[thread] = _Computation(done, steps)
+    """Note a computation of this thread, in place of the one that it is a part of, whichever of both ends first."""
+    noted = threading.get_ident(), _Computation(done, steps)
+    _underway.append(noted)
     try:
         yield
     finally:
-        if outer is None:
-            _by_thread.pop(thread, None)
-        else:
-            _by_thread[thread] = outer
+        _underway.remove(noted)
 
 
 def each_step(steps: Sequence[_T]) -> Iterator[_T]:
@@ -53,4 +50,5 @@ def filling(values: Floats) -> Iterator[None]:
 
 def steps_done() -> list[tuple[int, int]]:
     """Return how many steps of each computation in this process are done, and how many it has."""
-    return [(computation.done(), computation.steps) for computation in list(_by_thread.values())]
+    innermost = dict(list(_underway))
+    return [(computation.done(), computation.steps) for computation in innermost.values()]

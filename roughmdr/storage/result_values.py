@@ -31,7 +31,12 @@ _KNOWN_TOGETHER = {
 }
 """Variables that are known where another is."""
 _LARGEST = 1e150  # magnitude of a variable of a law in SI: products of larger ones overflow
-_NOT_NEGATIVE = ("1", "m2", "s")  # units of errors, shares, counts, areas and times
+_NOT_NEGATIVE = {
+    *(name for name, declared in RUN_VARIABLES.items() if declared.units in ("1", "s")),
+    *(name for name in LAW_VARIABLES if name.endswith(("_count", "_error", "_error_curve"))),
+    *("time", "pull_off_count"),
+}
+"""Errors, shares of a run, counts and times; of other variables differences are negative, too."""
 _ROUNDING = 1e-9  # share of the largest magnitude by which a sum may be off its bounds
 
 
@@ -87,7 +92,7 @@ def _pull_offs(data: Labelled) -> Iterator[str]:
 
 def _magnitudes(data: Labelled) -> Iterator[str]:
     """Find numbers that are too large, and negative ones of what is not negative."""
-    for name, declared in (LAW_VARIABLES | PULL_OFF | RUN_VARIABLES).items():
+    for name in (*LAW_VARIABLES, *PULL_OFF, *RUN_VARIABLES):
         for each in [held for held in (name, *statistics_of(name)) if held in data.variables]:
             values = data.variables[each].values
             if values.dtype.kind != "f":
@@ -95,7 +100,7 @@ def _magnitudes(data: Labelled) -> Iterator[str]:
             largest = float(np.fmax.reduce(np.abs(values), axis=None, initial=0.0))
             if largest > _LARGEST:
                 yield f"{each} is above {_LARGEST:g} in SI"
-            if declared.units in _NOT_NEGATIVE and (values < -_ROUNDING * largest).any():
+            if name in _NOT_NEGATIVE and (values < -_ROUNDING * largest).any():
                 yield f"{each} must be at least 0"
     for name in [name for name in _COUNTS if name in data.variables]:
         if not np.isfinite(data.variables[name].values).all():

@@ -13,7 +13,7 @@ from roughmdr.interaction.jkr.front import Front, Piece
 from roughmdr.interaction.jkr.jumps import Avalanche
 from roughmdr.interaction.jkr.lone import MOST_SLIDE
 from roughmdr.interaction.jkr.tension import Tension, largest_between, slope
-from roughmdr.interaction.totals import Overlap, Step
+from roughmdr.interaction.totals import CROWDING, Overlap, Step
 from roughmdr.loading.pull_off import PullOff
 from roughmdr.numerics.arguments import Floats
 from roughmdr.schema.units import format_quantity
@@ -132,7 +132,7 @@ class Account:
             unit / length * stiffness,
             on.size,
             unit * sizes * (_SOLVER_ERROR + problem.coupling.error),
-            Overlap(int(overlapping.sum()), share, self._crowding(state)),
+            Overlap(int(overlapping.sum()), share, self._crowding(state) if CROWDING in self._names else 0.0),
             int(np.count_nonzero(tilt * state.contacts.lift[on] > MOST_SLIDE * radius)),
             self.energy_unit * energy(problem, state) if "energy" in self._names else 0.0,
             *lost,

@@ -26,7 +26,7 @@ def solve_path(
 ) -> Adhering:
     """Return adhesive contacts at separations [m] of a flat that comes from infinity; w [J/m2].
 
-    The stiffness and the energy are computed where ``names`` asks for them; each contact is told where the flat is
+    Stiffness, energy and crowding are computed where ``names`` asks for them; each contact is told where the flat is
     closest, or at step number ``at``. Errors as ``interaction.solve``.
     """
     placed = Placed(ensemble, effective_modulus, interaction)
