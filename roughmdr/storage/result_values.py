@@ -32,11 +32,10 @@ _KNOWN_TOGETHER = {
 """Variables that are known where another is."""
 _LARGEST = 1e150  # magnitude of a variable of a law in SI: products of larger ones overflow
 _NOT_NEGATIVE = {
-    *(name for name, declared in RUN_VARIABLES.items() if declared.units in ("1", "s")),
-    *(name for name in LAW_VARIABLES if name.endswith(("_count", "_error", "_error_curve"))),
-    *("time", "pull_off_count"),
+    *(name for name, declared in (PULL_OFF | RUN_VARIABLES).items() if declared.units in ("1", "m2", "s")),
+    *(name for name in LAW_VARIABLES if name.endswith(("_count", "_error", "_error_curve")) or name == "time"),
 }
-"""Errors, shares of a run, counts and times; of other variables differences are negative, too."""
+"""What is told of runs, and errors, counts and times of laws; the difference of two laws has negative areas, too."""
 _ROUNDING = 1e-9  # share of the largest magnitude by which a sum may be off its bounds
 
 

@@ -9,12 +9,13 @@ import pytest
 import xarray as xr
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from scenes import ensemble
+from scenes import ASPERITIES, ensemble
 
 import roughmdr as rm
 from roughmdr.elements.path import solve_on_grid
 from roughmdr.elements.surface import surface_of_asperities
 from roughmdr.ensemble.ensemble import Ensemble
+from roughmdr.interaction import solve
 from roughmdr.interaction.buried import buried
 from roughmdr.interaction.crowding import crowding
 from roughmdr.interaction.neighbours import within_reach
@@ -107,3 +108,47 @@ def test_equal_contacts_count_once_a_pair() -> None:
     assert len(both) == 2  # in both orders
     near = crowding(at, np.full(2, 0.5), np.ones(2), None, np.full(2, np.inf), 2)
     assert near == pytest.approx(0.004)
+
+
+def test_a_machine_asks_for_the_errors_of_its_steps_only(monkeypatch: pytest.MonkeyPatch) -> None:
+    """And not of the separations at which it looks for them; a mean field has no error by distances."""
+    calls = list[int]()
+
+    def counted(*arguments: Any) -> float:
+        calls.append(arguments[0].shape[0])
+        return crowding(*arguments)
+
+    monkeypatch.setattr(solve, "crowding", counted)
+    monkeypatch.setattr("roughmdr.aggregate.neighbours.error_by_distances", None)
+    asperities = rm.generate({**ASPERITIES, "count": 30, "patch": "0.5 mm", "placement": "random"}, seed=1)
+    path = {"remote": ["1 um", "0.5 um", "0 um"], "machine_stiffness": "1000 N/m"}
+    for model, most in (("pairwise", 3), ("mean_field", 0)):
+        made = rm.load_separation(asperities, **path, effective_modulus=1e9, interaction={"model": model})
+        assert float(made.force[-1]) > 0.0
+        assert len(calls) == most
+        calls.clear()
+
+
+def test_the_error_of_adhesive_hills_goes_by_the_sense_of_motion(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The first unloading, before the deeper second loop, is no loading. How near contacts are is not asked."""
+    monkeypatch.setattr("roughmdr.interaction.jkr.account.crowding", None)
+    hills = ensemble([0.0, -1e-6, -2e-6], area=1.0, radius=1e3, x=[0.2, 0.7, 0.5], y=[0.5, 0.5, 0.9])
+    hills.attrs["asperity_model"] = "hills"
+    h = 1e-6 * np.array([5.0, -2.0, -3.0, -2.0, 20.0, -2.0, -6.0, -3.0])
+    law = rm.load_separation(
+        hills, separation=h, effective_modulus=1e9, work=0.01, interaction={"model": "pairwise"},
+        variables=["force", "model_error_curve"],
+    )  # fmt: skip
+    rises, touching = np.diff(h, prepend=np.inf) > 0.0, law.force.values != 0.0
+    curve = law.model_error_curve.values
+    assert touching[[1, 2, 3, 5, 6, 7]].all()
+    (unloading,), (loading,) = np.unique(curve[rises & touching]), np.unique(curve[~rises & touching])
+    assert 0.06 < unloading < loading < 1.0
+
+
+def test_of_hills_nothing_is_asked_for_that_their_error_does_not_use(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(solve, "crowding", None)
+    pair = ensemble([0.0, -1e-6], area=1.0, radius=1e3, x=[0.2, 0.7], y=[0.5, 0.5])
+    pair.attrs["asperity_model"] = "hills"
+    law = rm.load_separation(pair, separation=[-1e-5], effective_modulus=1e9, interaction={"model": "pairwise"})
+    assert float(law.interaction_error) > 0.0

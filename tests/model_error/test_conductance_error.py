@@ -6,7 +6,9 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from scenes import ensemble as asperities_at
 
+import roughmdr as rm
 from roughmdr.asperity.validity import ValidityLimits
 from roughmdr.ensemble.ensemble import Ensemble, Origin
 from roughmdr.model_error.conductance import conductance_error, coupled_conductance_error
@@ -90,3 +92,13 @@ def test_the_other_parts_of_the_model_error_are_added_where_there_is_contact() -
     assert of_independent(0.01, border_error=2.0) == 1.0
     assert of_independent(0.0, slope_error=0.02) == 0.0
     assert math.isnan(of_independent(None))
+
+
+@pytest.mark.parametrize("unit", [1e-6, 1e-3])
+def test_a_lone_asperity_has_the_parts_that_are_not_by_neighbours(unit: float) -> None:
+    one = asperities_at([0.0], area=1e4 * unit**2, shape="sphere", radius=10.0 * unit)
+    given = {"effective_modulus": 1e9, "variables": ["force", "conductance_radius"]}
+    pressed = rm.load_separation(one, separation=-4.0 * unit, **given)
+    assert float(pressed.conductance_error) == float(pressed.slope_error) > 0.1
+    apart = rm.load_separation(one, separation=unit, **given)
+    assert float(apart.conductance_error) == 0.0

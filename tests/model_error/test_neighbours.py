@@ -161,3 +161,48 @@ def test_of_many_that_cover_their_patch_the_mean_is_taken_off() -> None:
     free = error_by_distances(np.full(100, 0.01), np.ones(100), rng.random((100, 2)), None)
     assert abs(np.mean(errors)) < 0.02
     assert free > 1.0
+
+
+def lattice(count: int) -> dict[str, Any]:
+    """Equal paraboloids on a square lattice of one pitch, so many on the patch."""
+    asperities = {"source": "random", "shape": "paraboloid", "placement": "square", "pitch": "8 um"}
+    size = {"patch": f"{8.0 * math.sqrt(count)} um", "radius": "10 um"}
+    return {**asperities, **size, "height": {"distribution": "normal", "std": "0.1 nm"}}
+
+
+def of_fraction(made: xr.Dataset) -> Any:
+    """The error that the contact fraction alone tells."""
+    return interaction_error(made.largest_contact_fraction.values)
+
+
+@pytest.mark.parametrize("count", [1, 4, 9, 16])
+def test_a_lattice_is_one_surface_however_few_of_its_asperities_are_on_the_patch(count: int) -> None:
+    """Its force is too low by a third at 4.9 % contact."""
+    for estimator in ("sampled", "expected"):
+        batch = {"estimator": estimator, "realizations": 1}
+        table = scene(adhesion=None, asperities=lattice(count), path={"separation": ["-0.1 um"]}, batch=batch)
+        made = rm.run(table)
+        np.testing.assert_allclose(made.interaction_error, of_fraction(made), rtol=1e-12)
+        assert "too high" not in rm.info(made)
+    given: dict[str, Any] = {"separation": ["-0.1 um"], "effective_modulus": "1 GPa"}
+    placed = rm.generate(lattice(count), seed=1)
+    alone = rm.load_separation(placed, **given)
+    pairs = rm.load_separation(placed, **given, interaction={"model": "pairwise", "order": 2})
+    true = 1.0 - float(alone.force[0] / pairs.force[0])
+    assert 0.25 < true < float(alone.interaction_error) < 1.5 * true
+    np.testing.assert_allclose(alone.interaction_error, of_fraction(alone), rtol=1e-12)
+
+
+def test_a_density_is_a_sample_of_a_surface_however_few_are_drawn() -> None:
+    """About eight, more or fewer than ten by realisation."""
+    asperities = {
+        "source": "random", "shape": "paraboloid", "density": "2e10 /m^2", "patch": "20 um", "radius": "10 um",
+        "height": {"distribution": "normal", "std": "0.1 um"},
+    }  # fmt: skip
+    assert len({rm.generate(asperities, seed=seed).sizes["asperity"] > 10 for seed in range(8)}) == 2
+    for batch in ({"realizations": 8}, {"estimator": "expected", "realizations": 1}):
+        made = rm.run(scene(adhesion=None, asperities=asperities, path={"separation": ["0.1 um"]}, batch=batch))
+        np.testing.assert_allclose(made.interaction_error, of_fraction(made), rtol=1e-12)
+    drawn = rm.generate(asperities, seed=1)
+    alone = rm.load_separation(drawn, separation=0.0, effective_modulus=1e9)
+    np.testing.assert_allclose(alone.interaction_error, of_fraction(alone), rtol=1e-12)

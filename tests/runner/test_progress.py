@@ -55,6 +55,17 @@ def test_steps_of_parts_and_of_compiled_loops_are_those_of_their_thread() -> Non
     assert steps_done() == []
 
 
+def test_a_part_that_outlives_its_whole_leaves_nothing() -> None:
+    """A loop that is left is closed when it is collected, perhaps after the one around it."""
+    whole, part = each_step("ab"), each_step("xyz")
+    next(whole)
+    next(part)
+    whole.close()  # type: ignore[attr-defined]
+    assert steps_done() == [(0, 3)]
+    part.close()  # type: ignore[attr-defined]
+    assert steps_done() == []
+
+
 @pytest.mark.parametrize("changes", [
     {"path": {"preload": "0.1 mN", "machine_stiffness": "100 N/m", "steps": 9, "unload": True}},
     {"interaction": {"model": "pairwise"}, "adhesion": None},

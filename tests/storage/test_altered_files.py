@@ -240,3 +240,15 @@ def test_what_users_do_with_xarray_is_read(tmp_path: Path) -> None:
         assert done.exit_code == 0, (name, done.output)
         assert says in done.stderr, name
         assert bool(says) == bool(done.stderr), name
+
+
+def test_the_difference_of_two_laws_is_read_and_that_of_errors_refused() -> None:
+    """Areas and forces of a difference are negative; an error is not."""
+    one, other = (rm.run(RESULTS["curves"], set={"seed": seed}) for seed in (1, 2))
+    laws = ["force", "contact_area"]
+    for first, second in ((one, other), (other, one)):
+        difference = {name: first[name].copy(data=first[name] - second[name]) for name in laws}
+        assert rm.info(first.assign(difference))
+    assert any((one[name] < other[name]).any() and (one[name] > other[name]).any() for name in laws)
+    with pytest.raises(RoughmdrError, match="model_error must be at least 0"):
+        rm.info(one.assign(model_error=-one.model_error))
