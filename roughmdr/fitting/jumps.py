@@ -1,118 +1,157 @@
-"""Least squares of a law whose contacts jump: beside a measured step, or beyond it.
+"""Least squares of a law whose contact jumps, interval by interval.
 
-As a jump of the law passes a measured step, the sum of squares jumps as well. So it has a minimum for each interval
-between steps, and where the noise draws the minimum of the smooth part out of the interval, the least lies at its edge.
-Parameters are counted in standard errors here, u, in which the smooth part is a sphere about its minimum: the least
-squares are at the point of the interval that is nearest to that.
+As a jump of the law passes a measured step, the sum of squares jumps as well. Between, it is smooth, and has a minimum
+for each interval: the pair of steps between which contact is made, and that between which it is lost. It is found by
+Gauss and Newton's method with the edges of the interval as constraints, and neighbouring intervals are tried from it.
 """
 
-from collections.abc import Callable
-from functools import partial
-from typing import NamedTuple
+from collections.abc import Iterator
 
 import numpy as np
 
+from roughmdr.fitting.model import Model, Point
 from roughmdr.numerics.arguments import Floats
 
-_REACH = 3.0  # standard errors within which other intervals are sought
-_FRACTIONS = np.array([-1.0, -0.5, -0.25, -0.125, 0.125, 0.25, 0.5, 1.0])  # of it, at which they are
+Interval = tuple[int, ...]
+"""The steps after which the contact is made or lost."""
+
 _FLAT = 1e-6  # of the largest slope: smaller ones tell no standard error
-_AT_REST = 1e-4  # standard errors to the minimum of the smooth part, where the search by slopes has reached it
-_INSIDE = 1e-6  # standard errors from an edge, on the near side of it
-_ROUGHLY = 1e-4  # standard errors to which an edge is found where only its direction is asked for
-_APART = 0.05  # standard errors between places at which an edge is looked for, which tell its direction
-_MAX_EDGES = 3
-_LEAST_JUMP = 10.0  # of the sum of squares, over the variance of a deviation: smaller ones are no edge
-
-Cost = Callable[[Floats], float]
-"""Returns the sum of squares at a point u, over the variance of a deviation."""
+_INSIDE = 1e-5  # of a step, from the edges of an interval to where it ends here
+_CHANGE = 1e-5  # of x, in differences of the places of jumps
+_NEWTON, _ITERATIONS, _HALVINGS = 8, 20, 8
+_LONGEST = 1.0  # of x, in an iteration
+_LESS = 1e-8  # of the sum of squares: a smaller decrease ends the iterations
+_LEAST_GAIN = 1e-7  # of the sum of squares, by which another interval is better
+_FARTHEST = 2  # steps to the neighbours of an interval
 
 
-class Surroundings(NamedTuple):
-    """The parameters about the end of a search by slopes, in standard errors."""
+def least_squares_between(model: Model, starts: list[Floats]) -> Floats:
+    """Return the parameters of least squares, from the best interval of some starts to the best of its neighbours.
 
-    axes: Floats
-    """x = middle + axes u."""
-    goal: Floats
-    """The minimum of the smooth part, u."""
-    variance: float
-    """Of a deviation."""
-
-    @classmethod
-    def of(cls, deviations: Floats, slopes: Floats) -> "Surroundings":
-        """Return those of deviations and their slopes [step, parameter]."""
-        left, sizes, right = np.linalg.svd(slopes, full_matrices=False)
-        variance = float(np.mean(np.square(deviations)))
-        errors = np.sqrt(variance) / np.maximum(sizes, _FLAT * sizes[0])
-        return cls(right.T * errors, -(left.T @ deviations) * (sizes / variance) * errors, variance)
-
-    @property
-    def at_rest(self) -> bool:
-        """Whether the minimum of the smooth part is reached."""
-        return bool(np.linalg.norm(self.goal) < _AT_REST)
-
-    def around(self) -> Floats:
-        """Return points in which other intervals may lie: on the axes, and where one parameter is off: [point, u]."""
-        profiles = self.axes.T / np.linalg.norm(self.axes, axis=1)
-        ways = np.concatenate([np.eye(self.goal.size), profiles.T])
-        return np.asarray((_REACH * _FRACTIONS[:, None, None] * ways).reshape(-1, self.goal.size))
+    The first of the intervals is that in which the largest changes of the measured load lie.
+    """
+    points = [model.point(x) for x in starts]
+    found = [_least(model, point) for point in points]
+    found += [_least(model, point) for each in points for point in _moved(model, each, _measured(model, each.jumps))]
+    best = min(found, key=_cost)
+    tried = {each.jumps for each in found}
+    while True:
+        left = np.linalg.svd(model.slopes(best.x), full_matrices=False)[0]
+        better = None
+        for interval in _neighbours(best.jumps):
+            for point in _moved(model, best, interval) if interval not in tried else ():
+                within_reach = _cost(point) - float(np.sum(np.square(left.T @ point.deviations)))
+                if within_reach < _cost(best):
+                    point = _least(model, point)
+                    better = min(better or point, point, key=_cost)
+            tried.add(interval)
+        if better is None or _cost(better) > (1.0 - _LEAST_GAIN) * _cost(best):
+            return best.x
+        best = better
 
 
-def nearest_within(cost: Cost, goal: Floats) -> Floats:
-    """Return the point that is nearest to ``goal`` without a jump between it and 0."""
-    here, normals, ends = np.zeros_like(goal), list[Floats](), list[float]()
-    for _ in range(_MAX_EDGES):
-        aim = _projected(goal, normals, ends)
-        way = float(np.linalg.norm(aim - here))
-        if way < _INSIDE:
+def _cost(point: Point) -> float:
+    return float(np.sum(np.square(point.deviations)))
+
+
+def _measured(model: Model, jumps: Interval) -> Interval:
+    """Return the steps at which the measured load changes most, where the law jumps on the same ways."""
+    turns = np.sign(np.diff(model.curve.values))
+    way = np.cumsum(np.diff(turns, prepend=turns[0]) != 0.0)
+    change = np.abs(np.diff(model.curve.load))
+    return tuple(int(np.argmax(np.where(way == way[jump], change, -1.0))) for jump in jumps)
+
+
+def _neighbours(interval: Interval) -> Iterator[Interval]:
+    """Yield the intervals with one jump some steps on, or with two jumps one step on."""
+    each = np.eye(len(interval), dtype=int)
+    pairs = [a * first + b * second for i, first in enumerate(each) for second in each[:i] for a in (-1, 1) for b in (-1, 1)]
+    singles = [sign * far * one for far in range(1, _FARTHEST + 1) for one in each for sign in (-1, 1)]
+    for change in [*singles, *pairs]:
+        yield tuple((np.array(interval) + change).tolist())
+
+
+def _moved(model: Model, point: Point, interval: Interval) -> Iterator[Point]:
+    """Yield the point of an interval that is nearest by Newton's method, if it finds one."""
+    if not interval or min(interval) < 0 or max(interval) > model.curve.values.size - 2:
+        return
+    low, high = model.bounds
+    for _ in range(_NEWTON):
+        if point.jumps == interval:
+            yield point
+            return
+        edges = _places(model, point.x, interval)
+        if edges is None:
+            return
+        places, slopes = edges
+        change = np.clip(places, 2.0 * _INSIDE, 1.0 - 2.0 * _INSIDE) - places
+        point = model.point(np.clip(point.x + np.linalg.pinv(slopes) @ change, low, high))
+
+
+def _places(model: Model, x: Floats, interval: Interval) -> tuple[Floats, Floats] | None:
+    """Return where the jumps lie, 0 to 1 in the interval, and the slopes [jump, parameter]; None where there are not
+    as many.
+    """
+    values = model.curve.values
+    begin, width = values[list(interval)], np.diff(values)[list(interval)]
+    low, high = model.bounds
+    changes = np.where(x + _CHANGE > high, -_CHANGE, _CHANGE)
+    found = [model.jumps_at(each) for each in [x, *(x + np.diag(changes))]]
+    if any(each.size != len(interval) for each in found) or not width.all():
+        return None
+    places = (np.array(found) - begin) / width
+    return places[0], (places[1:] - places[0]).T / changes
+
+
+def _least(model: Model, point: Point) -> Point:
+    """Return the least squares in the interval of a point."""
+    for _ in range(_ITERATIONS):
+        before, ahead = _cost(point), _step(model, point)
+        for _ in range(_HALVINGS):
+            trials = _moved(model, model.point(point.x + ahead), point.jumps) if point.jumps else [model.point(point.x + ahead)]
+            trial = next(iter(trials), point)
+            if _cost(trial) < before:
+                break
+            ahead = 0.5 * ahead
+        else:
+            return point
+        point = trial
+        if _cost(point) > (1.0 - _LESS) * before:
             break
-        ahead = (aim - here) / way
-        level = cost(here)
-        if cost(aim) <= level:
-            return aim
-
-        def beyond(t: float, start: Floats, limit: float, ahead: Floats = ahead) -> bool:
-            return cost(start + t * ahead) > limit
-
-        far = _until(partial(beyond, start=here, limit=level), (0.0, way), _INSIDE)
-        jump = cost(here + (far + 2.0 * _INSIDE) * ahead) - level
-        if jump < _LEAST_JUMP:
-            break
-        limit = level + 0.5 * jump
-        normal = ahead.copy()
-        for side in np.linalg.svd(ahead[None])[2][1:]:
-            apart = partial(beyond, start=here + _APART * side, limit=limit)
-            normal -= (_until(apart, (far - 1.0, far + 1.0), _ROUGHLY) - far) / _APART * side
-        normal /= np.linalg.norm(normal)
-        edge = here + far * ahead
-        normals.append(normal)
-        ends.append(float(normal @ edge) - _INSIDE)
-        here = here + max(far - _INSIDE, 0.0) * ahead
-    return here
+    return point
 
 
-def _until(beyond: Callable[[float], bool], between: tuple[float, float], error: float) -> float:
-    """Return up to where something is not beyond an edge, to this error."""
-    low, high = between
-    while high - low > error:
-        middle = 0.5 * (low + high)
-        low, high = (low, middle) if beyond(middle) else (middle, high)
-    return low
+def _step(model: Model, point: Point) -> Floats:
+    """Return the step to the least squares of the linear law, between the edges and the bounds."""
+    left, sizes, right = np.linalg.svd(model.slopes(point.x), full_matrices=False)
+    sizes = np.maximum(sizes, _FLAT * sizes[0])
+    axes, goal = right.T / sizes, -left.T @ point.deviations
+    low, high = model.bounds
+    sides, ends = [np.eye(point.x.size), -np.eye(point.x.size)], [high - point.x, point.x - low]
+    edges = _places(model, point.x, point.jumps)
+    if edges is not None and point.jumps:
+        places, slopes = edges
+        sides += [slopes, -slopes]
+        ends += [1.0 - _INSIDE - places, places - _INSIDE]
+    ahead = axes @ _projected(goal, np.concatenate(sides) @ axes, np.maximum(np.concatenate(ends), 0.0))
+    return np.asarray(ahead / max(np.abs(ahead).max() / _LONGEST, 1.0))
 
 
-def _projected(goal: Floats, normals: list[Floats], ends: list[float]) -> Floats:
-    """Return the point nearest to ``goal`` with normal . u <= end for each edge.
+def _projected(goal: Floats, sides: Floats, ends: Floats) -> Floats:
+    """Return the point nearest to ``goal`` with side . u <= end for each edge.
 
     C. L. Lawson, R. J. Hanson, Solving Least Squares Problems (1974), chapter 23: least distance programming.
     """
-    if not normals:
-        return goal
     from scipy.optimize import nnls
 
-    sides = np.array(normals)
-    excess = sides @ goal - np.array(ends)
+    lengths = np.linalg.norm(sides, axis=1)
+    sides, ends = sides[lengths > 0.0] / lengths[lengths > 0.0, None], ends[lengths > 0.0] / lengths[lengths > 0.0]
+    excess = sides @ goal - ends
+    if excess.max() <= 0.0:
+        return goal
+    size = float(excess.max())
     last = np.zeros(goal.size + 1)
     last[-1] = 1.0
-    multipliers, _ = nnls(np.vstack([-sides.T, excess]), last)
-    rest = np.append(-sides.T @ multipliers, float(excess @ multipliers) - 1.0)
-    return np.asarray(goal - rest[:-1] / rest[-1])
+    multipliers, _ = nnls(np.vstack([-sides.T, excess / size]), last)
+    rest = np.append(-sides.T @ multipliers, float(excess @ multipliers) / size - 1.0)
+    return np.asarray(goal - size * rest[:-1] / rest[-1])
