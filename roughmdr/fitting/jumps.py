@@ -9,7 +9,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from roughmdr.fitting.model import Model, Point
+from roughmdr.fitting.model import Jumps, Model, Point
 from roughmdr.numerics.arguments import Floats
 
 Interval = tuple[int, ...]
@@ -17,35 +17,37 @@ Interval = tuple[int, ...]
 
 _FLAT = 1e-6  # of the largest slope: smaller ones tell no standard error
 _INSIDE = 1e-5  # of a step, from the edges of an interval to where it ends here
-_CHANGE = 1e-5  # of x, in differences of the places of jumps
-_NEWTON, _ITERATIONS, _HALVINGS = 8, 20, 8
+_NEWTON, _ITERATIONS, _HALVINGS = 4, 20, 8
 _LONGEST = 1.0  # of x, in an iteration
-_LESS = 1e-8  # of the sum of squares: a smaller decrease ends the iterations
+_LESS = 1e-11  # of the sum of squares: a smaller decrease ends the iterations
 _LEAST_GAIN = 1e-7  # of the sum of squares, by which another interval is better
 _FARTHEST = 2  # steps to the neighbours of an interval
 
 
-def least_squares_between(model: Model, starts: list[Floats]) -> Floats:
-    """Return the parameters of least squares, from the best interval of some starts to the best of its neighbours.
+def with_measured_jumps(model: Model, x: Floats) -> Floats:
+    """Return the x nearest to one whose law jumps where the measured load changes most, or x where there is none."""
+    point = model.point(x)
+    moved = _moved(model, point, _measured(model, point.jumps), model.jumps_at(x))
+    return x if moved is None else moved.x
 
-    The first of the intervals is that in which the largest changes of the measured load lie.
+
+def least_squares_between(model: Model, x: Floats) -> Floats:
+    """Return the parameters of least squares from some x, in the best interval.
+
+    They are that of x and that of the measured jumps, and then the neighbours of the better, as long as one is better.
     """
-    points = [model.point(x) for x in starts]
-    found = [_least(model, point) for point in points]
-    found += [_least(model, point) for each in points for point in _moved(model, each, _measured(model, each.jumps))]
-    best = min(found, key=_cost)
-    tried = {each.jumps for each in found}
+    starts = (x, with_measured_jumps(model, x))
+    best = min((_least(model, model.point(each)) for each in starts), key=_cost)
+    tried = {best.jumps, model.point(x).jumps}
     while True:
-        left = np.linalg.svd(model.slopes(best.x), full_matrices=False)[0]
-        better = None
+        better, left = best, np.linalg.svd(model.slopes(best.x), full_matrices=False)[0]
+        places = model.jumps_at(best.x)
         for interval in _neighbours(best.jumps):
-            for point in _moved(model, best, interval) if interval not in tried else ():
-                within_reach = _cost(point) - float(np.sum(np.square(left.T @ point.deviations)))
-                if within_reach < _cost(best):
-                    point = _least(model, point)
-                    better = min(better or point, point, key=_cost)
+            point = None if interval in tried else _moved(model, best, interval, places)
+            if point is not None and _cost(point) - np.sum(np.square(left.T @ point.deviations)) < _cost(better):
+                better = min(better, _least(model, point), key=_cost)
             tried.add(interval)
-        if better is None or _cost(better) > (1.0 - _LEAST_GAIN) * _cost(best):
+        if _cost(better) > (1.0 - _LEAST_GAIN) * _cost(best):
             return best.x
         best = better
 
@@ -65,55 +67,43 @@ def _measured(model: Model, jumps: Interval) -> Interval:
 def _neighbours(interval: Interval) -> Iterator[Interval]:
     """Yield the intervals with one jump some steps on, or with two jumps one step on."""
     each = np.eye(len(interval), dtype=int)
-    pairs = [a * first + b * second for i, first in enumerate(each) for second in each[:i] for a in (-1, 1) for b in (-1, 1)]
-    singles = [sign * far * one for far in range(1, _FARTHEST + 1) for one in each for sign in (-1, 1)]
+    pairs = [a * one + b * two for i, one in enumerate(each) for two in each[:i] for a in (-1, 1) for b in (-1, 1)]
+    singles = [steps * one for one in each for steps in range(-_FARTHEST, _FARTHEST + 1) if steps]
     for change in [*singles, *pairs]:
         yield tuple((np.array(interval) + change).tolist())
 
 
-def _moved(model: Model, point: Point, interval: Interval) -> Iterator[Point]:
-    """Yield the point of an interval that is nearest by Newton's method, if it finds one."""
-    if not interval or min(interval) < 0 or max(interval) > model.curve.values.size - 2:
-        return
+def _moved(model: Model, point: Point, interval: Interval, jumps: Jumps | None) -> Point | None:
+    """Return the point of an interval that is nearest by Newton's method; None where it finds none."""
     low, high = model.bounds
-    for _ in range(_NEWTON):
-        if point.jumps == interval:
-            yield point
-            return
-        edges = _places(model, point.x, interval)
-        if edges is None:
-            return
-        places, slopes = edges
-        change = np.clip(places, 2.0 * _INSIDE, 1.0 - 2.0 * _INSIDE) - places
-        point = model.point(np.clip(point.x + np.linalg.pinv(slopes) @ change, low, high))
-
-
-def _places(model: Model, x: Floats, interval: Interval) -> tuple[Floats, Floats] | None:
-    """Return where the jumps lie, 0 to 1 in the interval, and the slopes [jump, parameter]; None where there are not
-    as many.
-    """
-    values = model.curve.values
-    begin, width = values[list(interval)], np.diff(values)[list(interval)]
-    low, high = model.bounds
-    changes = np.where(x + _CHANGE > high, -_CHANGE, _CHANGE)
-    found = [model.jumps_at(each) for each in [x, *(x + np.diag(changes))]]
-    if any(each.size != len(interval) for each in found) or not width.all():
+    if interval and not 0 <= min(interval) <= max(interval) < model.curve.values.size - 1:
         return None
-    places = (np.array(found) - begin) / width
-    return places[0], (places[1:] - places[0]).T / changes
+    for _ in range(_NEWTON):
+        if jumps is None or jumps.control.size != len(interval):
+            return None
+        places, slopes = _places(model, interval, jumps)
+        change = np.clip(places, 2.0 * _INSIDE, 1.0 - 2.0 * _INSIDE) - places
+        step = np.linalg.pinv(slopes) @ change
+        if not np.allclose(slopes @ step, change, rtol=0.0, atol=_INSIDE):
+            return None
+        point = model.point(np.clip(point.x + step, low, high))
+        if point.jumps == interval:
+            return point
+        jumps = model.jumps_at(point.x)
+    return None
+
+
+def _places(model: Model, interval: Interval, jumps: Jumps) -> tuple[Floats, Floats]:
+    """Return where jumps lie, 0 to 1 in an interval, and the derivatives [jump, parameter]."""
+    begin, width = model.curve.values[list(interval)], np.diff(model.curve.values)[list(interval)]
+    return (jumps.control - begin) / width, jumps.slopes / width[:, None]
 
 
 def _least(model: Model, point: Point) -> Point:
     """Return the least squares in the interval of a point."""
     for _ in range(_ITERATIONS):
-        before, ahead = _cost(point), _step(model, point)
-        for _ in range(_HALVINGS):
-            trials = _moved(model, model.point(point.x + ahead), point.jumps) if point.jumps else [model.point(point.x + ahead)]
-            trial = next(iter(trials), point)
-            if _cost(trial) < before:
-                break
-            ahead = 0.5 * ahead
-        else:
+        before, trial = _cost(point), _improved(model, point)
+        if trial is None:
             return point
         point = trial
         if _cost(point) > (1.0 - _LESS) * before:
@@ -121,20 +111,30 @@ def _least(model: Model, point: Point) -> Point:
     return point
 
 
-def _step(model: Model, point: Point) -> Floats:
-    """Return the step to the least squares of the linear law, between the edges and the bounds."""
+def _improved(model: Model, point: Point) -> Point | None:
+    """Return a better point of the same interval, as the linear law has it; None where there is none."""
     left, sizes, right = np.linalg.svd(model.slopes(point.x), full_matrices=False)
-    sizes = np.maximum(sizes, _FLAT * sizes[0])
-    axes, goal = right.T / sizes, -left.T @ point.deviations
+    axes, goal = right.T / np.maximum(sizes, _FLAT * sizes[0]), -left.T @ point.deviations
     low, high = model.bounds
     sides, ends = [np.eye(point.x.size), -np.eye(point.x.size)], [high - point.x, point.x - low]
-    edges = _places(model, point.x, point.jumps)
-    if edges is not None and point.jumps:
-        places, slopes = edges
-        sides += [slopes, -slopes]
-        ends += [1.0 - _INSIDE - places, places - _INSIDE]
-    ahead = axes @ _projected(goal, np.concatenate(sides) @ axes, np.maximum(np.concatenate(ends), 0.0))
-    return np.asarray(ahead / max(np.abs(ahead).max() / _LONGEST, 1.0))
+    for edged in (False, True):
+        jumps = model.jumps_at(point.x) if edged else None
+        if jumps is not None:
+            places, slopes = _places(model, point.jumps, jumps)
+            sides, ends = [*sides, slopes, -slopes], [*ends, 1.0 - _INSIDE - places, places - _INSIDE]
+        u = _projected(goal, np.concatenate(sides) @ axes, np.maximum(np.concatenate(ends), 0.0))
+        if _cost(point) * _LESS > goal @ goal - (goal - u) @ (goal - u):
+            return None
+        ahead = axes @ u
+        ahead /= max(np.abs(ahead).max() / _LONGEST, 1.0)
+        for _ in range(_HALVINGS if edged else 1):
+            trial = model.point(point.x + ahead)
+            if edged and trial.jumps != point.jumps:
+                trial = _moved(model, trial, point.jumps, model.jumps_at(trial.x)) or point
+            if trial.jumps == point.jumps and _cost(trial) < _cost(point):
+                return trial
+            ahead = 0.5 * ahead
+    return None
 
 
 def _projected(goal: Floats, sides: Floats, ends: Floats) -> Floats:

@@ -24,7 +24,8 @@ from roughmdr.schema.toml_text import parse_toml
 _LEAST_ERROR = 1e-12  # relative error of the force of a contact
 _LONGEST_STEP = 0.01  # of x, in differences
 _JUMP = 0.5  # ratio of the differences to both sides of x, beyond which one of them holds a jump
-_FINER, _REFINEMENTS = 256, 3  # steps in the place of one, and how often, in which the place of a jump is found
+_LITTLE = 1e-5  # of x, in differences of the places of jumps
+_FINER, _REFINEMENTS = 64, 4  # steps in the place of one, and how often, in which the place of a jump is found
 
 
 class Point(NamedTuple):
@@ -37,6 +38,15 @@ class Point(NamedTuple):
     """Relative error of the law."""
     jumps: tuple[int, ...]
     """The steps after which the contact is made or lost."""
+
+
+class Jumps(NamedTuple):
+    """Where the contact is made and lost along the path, in order."""
+
+    control: Floats
+    """[m]"""
+    slopes: Floats
+    """Derivatives [jump, parameter] of the control."""
 
 
 _NONE = Point(np.empty(0), np.empty(0), 0.0, ())
@@ -59,6 +69,7 @@ class Model:
         source, layers = scene.asperities, (scene.interaction, scene.viscoelastic, scene.nominal)
         self._is_plain = source.node_count(2) == source.node_count(1) and all(layer is None for layer in layers)
         self.jumps = source.equal_heights and scene.work > 0.0
+        self._path = LoadingPath.along(curve.values, unload=False, adhesive=scene.work > 0.0)
         self.exact = True
         self.evaluations = 0
         self._last = _NONE
@@ -98,6 +109,8 @@ class Model:
 
     def _path_in(self, scene: Scene, x: Floats, values: Floats) -> LoadingPath | MachinePath:
         """Return the path of the flat or of its machine in the scene."""
+        if self.curve.control == "separation" and values is self.curve.values:
+            return self._path.relative_to(-self._offset(x))
         steps = values + self._offset(x)
         if self.curve.control == "remote" and self.exact:
             return machine_path(scene, steps)
@@ -134,18 +147,28 @@ class Model:
             return Point(x, np.full(found.size, np.inf), 0.0, ())
         return Point(x, found, error, tuple(_changes(load != 0.0).tolist()))
 
-    def jumps_at(self, x: Floats) -> Floats:
-        """Return the control at which the contact is made or lost, in order; empty where the law has none."""
-        steps = self.curve.values
-        at = np.array(self.point(x).jumps, dtype=int)
-        first, last = steps[at], steps[at + 1]
+    def jumps_at(self, x: Floats) -> Jumps | None:
+        """Return where the contact is made and lost; None where the law, there or nearby, has no or other jumps."""
+        if not self.point(x).jumps:
+            return None
+        changes = np.where(x + _LITTLE > self.bounds[1], -_LITTLE, _LITTLE)
+        found = [self._control_of_jumps(each) for each in [x, *(x + np.diag(changes))]]
+        if len({each.size for each in found}) > 1 or not found[0].size:
+            return None
+        return Jumps(found[0], np.stack([each - found[0] for each in found[1:]], axis=1) / changes)
+
+    def _control_of_jumps(self, x: Floats) -> Floats:
+        """Return that at which the contact is made or lost, in order; empty where the law has none."""
+        at = np.array(self._point(x).jumps, dtype=int)
+        first, last = self.curve.values[at], self.curve.values[at + 1]
         for _ in range(_REFINEMENTS if at.size else 0):
             between = np.linspace(first, last, _FINER + 1)
-            finer = np.insert(steps, np.repeat(at + 1, _FINER + 1), between.T.ravel())
+            finer = np.insert(self.curve.values, np.repeat(at + 1, _FINER + 1), between.T.ravel())
             try:
-                found = _changes(self._load(x, finer)[0] != 0.0)
+                force, _ = self._load(x, finer)
             except RoughmdrError:
                 return np.empty(0)
+            found = _changes(force != 0.0)
             if found.size != at.size:
                 return np.empty(0)
             first, last = finer[found], finer[found + 1]

@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from roughmdr.fitting.jumps import least_squares_between
+from roughmdr.fitting.jumps import least_squares_between, with_measured_jumps
 from roughmdr.fitting.model import Model
 from roughmdr.fitting.residuals import is_systematic, relative_rms
 from roughmdr.numerics.arguments import Floats
@@ -44,9 +44,10 @@ def search(model: Model) -> Found:
 
 def _search(model: Model) -> Found:
     start = np.zeros(len(model.parameters))
-    found = [_follow(model, start)] if np.isfinite(model.deviations(start)).all() else []
+    first = with_measured_jumps(model, start) if model.jumps and model.exact else start
+    found = [_follow(model, first)] if np.isfinite(model.deviations(first)).all() else []
     if not found or _is_poor(model, found[0]):
-        starts = _other_starts(model)
+        starts = np.concatenate([_other_starts(model), start[None]]) if first.any() else _other_starts(model)
         costs = [float(np.sum(np.square(model.deviations(x)))) for x in starts]
         best = [starts[i] for i in np.argsort(costs)[:_TRIED] if np.isfinite(costs[i])]
         if not best and not found:
@@ -61,9 +62,7 @@ def _cost(found: Found) -> float:
 
 def _settled(model: Model, found: Found) -> Found:
     """Return the least squares of all intervals between jumps: see ``jumps``."""
-    start = np.zeros(found.x.size)
-    starts = [found.x, start] if np.isfinite(model.deviations(start)).all() else [found.x]
-    x = least_squares_between(model, starts)
+    x = least_squares_between(model, found.x)
     return Found(x, model.deviations(x), model.slopes(x), found.converged)
 
 
