@@ -75,16 +75,16 @@ def _neighbours(interval: Interval) -> Iterator[Interval]:
 
 def _moved(model: Model, point: Point, interval: Interval, jumps: Jumps | None) -> Point | None:
     """Return the point of an interval that is nearest by Newton's method; None where it finds none."""
-    low, high = model.bounds
-    if interval and not 0 <= min(interval) <= max(interval) < model.curve.values.size - 1:
+    (low, high), widths = model.bounds, np.diff(model.curve.values)
+    if not all(0 <= step < widths.size and widths[step] for step in interval):
         return None
     for _ in range(_NEWTON):
         if jumps is None or jumps.control.size != len(interval):
             return None
         places, slopes = _places(model, interval, jumps)
-        change = np.clip(places, 2.0 * _INSIDE, 1.0 - 2.0 * _INSIDE) - places
-        step = np.linalg.pinv(slopes) @ change
-        if not np.allclose(slopes @ step, change, rtol=0.0, atol=_INSIDE):
+        sides, ends = np.concatenate([slopes, -slopes]), np.concatenate([1.0 - places, places]) - 2.0 * _INSIDE
+        step = _projected(np.zeros(point.x.size), sides, ends)
+        if not (sides @ step < ends + _INSIDE).all():
             return None
         point = model.point(np.clip(point.x + step, low, high))
         if point.jumps == interval:
@@ -147,11 +147,11 @@ def _projected(goal: Floats, sides: Floats, ends: Floats) -> Floats:
     lengths = np.linalg.norm(sides, axis=1)
     sides, ends = sides[lengths > 0.0] / lengths[lengths > 0.0, None], ends[lengths > 0.0] / lengths[lengths > 0.0]
     excess = sides @ goal - ends
-    if excess.max() <= 0.0:
+    if np.max(excess, initial=0.0) <= 0.0:
         return goal
-    size = float(excess.max())
+    size = float(np.abs(excess).max())
     last = np.zeros(goal.size + 1)
     last[-1] = 1.0
     multipliers, _ = nnls(np.vstack([-sides.T, excess / size]), last)
     rest = np.append(-sides.T @ multipliers, float(excess @ multipliers) / size - 1.0)
-    return np.asarray(goal - size * rest[:-1] / rest[-1])
+    return np.asarray(goal - size * rest[:-1] / (rest[-1] or -np.inf))
