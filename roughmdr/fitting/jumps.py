@@ -1,112 +1,157 @@
-"""Least squares of a law whose contacts jump: beside a measured step, or beyond it.
+"""Least squares of a law whose contact jumps, interval by interval.
 
-As a jump of the law passes a measured step, the sum of squares jumps as well. So it has a minimum for each interval
-between steps, and where the noise draws the minimum of the smooth part out of the interval, the least lies at its edge.
-Parameters are counted in standard errors here, u, in which the smooth part is a sphere about its minimum: the least
-squares are at the point of the interval that is nearest to that.
+As a jump of the law passes a measured step, the sum of squares jumps as well. Between, it is smooth, and has a minimum
+for each interval: the pair of steps between which contact is made, and that between which it is lost. It is found by
+Gauss and Newton's method with the edges of the interval as constraints, and neighbouring intervals are tried from it.
 """
 
-from collections.abc import Callable
-from typing import NamedTuple
+from collections.abc import Iterator
 
 import numpy as np
 
+from roughmdr.fitting.model import Jumps, Model, Point
 from roughmdr.numerics.arguments import Floats
 
-_REACH = 3.0  # standard errors within which other intervals are sought
-_FRACTIONS = np.array([-1.0, -0.5, -0.25, -0.125, 0.125, 0.25, 0.5, 1.0])  # places where they are sought, in reaches
-_FLAT = 1e-6  # slope over the largest one, below which it tells no standard error
-_AT_REST = 1e-4  # standard errors to the minimum of the smooth part, where the search by slopes has reached it
-_INSIDE = 1e-6  # standard errors from an edge, on the near side of it
-_ROUGHLY = 1e-4  # standard errors to which an edge is found where only its direction is asked for
-_APART = 0.05  # standard errors between places at which an edge is looked for, which tell its direction
-_MAX_EDGES = 3  # edges at which the nearest point may lie
-_LEAST_JUMP = 10.0  # least change of the sum of squares at an edge, over the variance of a deviation
+Interval = tuple[int, ...]
+"""The steps after which the contact is made or lost."""
 
-Cost = Callable[[Floats], float]
-"""Returns the sum of squares at a point u, over the variance of a deviation."""
+_FLAT = 1e-6  # of the largest slope: smaller ones tell no standard error
+_INSIDE = 1e-5  # of a step, from the edges of an interval to where it ends here
+_NEWTON, _ITERATIONS, _HALVINGS = 4, 20, 8
+_LONGEST = 1.0  # of x, in an iteration
+_LESS = 1e-11  # of the sum of squares: a smaller decrease ends the iterations
+_LEAST_GAIN = 1e-7  # of the sum of squares, by which another interval is better
+_FARTHEST = 2  # steps to the neighbours of an interval
 
 
-class Surroundings(NamedTuple):
-    """The parameters about the end of a search by slopes, in standard errors."""
-
-    axes: Floats
-    """x = middle + axes u."""
-    goal: Floats
-    """The minimum of the smooth part, u."""
-    variance: float
-    """Variance of a deviation."""
-
-    @classmethod
-    def of(cls, deviations: Floats, slopes: Floats) -> "Surroundings":
-        """Return those of deviations and their slopes [step, parameter]."""
-        left, sizes, right = np.linalg.svd(slopes, full_matrices=False)
-        variance = float(np.mean(np.square(deviations)))
-        errors = np.sqrt(variance) / np.maximum(sizes, _FLAT * sizes[0])
-        return cls(right.T * errors, -(left.T @ deviations) * (sizes / variance) * errors, variance)
-
-    @property
-    def at_rest(self) -> bool:
-        """Whether the minimum of the smooth part is reached."""
-        return bool(np.linalg.norm(self.goal) < _AT_REST)
-
-    def around(self) -> Floats:
-        """Return points in which other intervals may lie: on the axes, and where one parameter is off: [point, u]."""
-        profiles = self.axes.T / np.linalg.norm(self.axes, axis=1)
-        ways = np.concatenate([np.eye(self.goal.size), profiles.T])
-        return np.asarray((_REACH * _FRACTIONS[:, None, None] * ways).reshape(-1, self.goal.size))
+def with_measured_jumps(model: Model, x: Floats) -> Floats:
+    """Return the x nearest to one whose law jumps where the measured load changes most, or x where there is none."""
+    point = model.point(x)
+    moved = _moved(model, point, _measured(model, point.jumps), model.jumps_at(x))
+    return x if moved is None else moved.x
 
 
-def nearest_within(cost: Cost, goal: Floats) -> Floats:
-    """Return the point that is nearest to ``goal`` without a jump between it and 0."""
-    here, normals, ends = np.zeros_like(goal), list[Floats](), list[float]()
-    for _ in range(_MAX_EDGES):
-        aim = _projected(goal, normals, ends)
-        way = float(np.linalg.norm(aim - here))
-        if way < _INSIDE:
+def least_squares_between(model: Model, x: Floats) -> Floats:
+    """Return the parameters of least squares from some x, in the best interval.
+
+    They are that of x and that of the measured jumps, and then the neighbours of the better, as long as one is better.
+    """
+    starts = (x, with_measured_jumps(model, x))
+    best = min((_least(model, model.point(each)) for each in starts), key=_cost)
+    tried = {best.jumps, model.point(x).jumps}
+    while True:
+        better, left = best, np.linalg.svd(model.slopes(best.x), full_matrices=False)[0]
+        places = model.jumps_at(best.x)
+        for interval in _neighbours(best.jumps):
+            point = None if interval in tried else _moved(model, best, interval, places)
+            if point is not None and _cost(point) - np.sum(np.square(left.T @ point.deviations)) < _cost(better):
+                better = min(better, _least(model, point), key=_cost)
+            tried.add(interval)
+        if _cost(better) > (1.0 - _LEAST_GAIN) * _cost(best):
+            return best.x
+        best = better
+
+
+def _cost(point: Point) -> float:
+    return float(np.sum(np.square(point.deviations)))
+
+
+def _measured(model: Model, jumps: Interval) -> Interval:
+    """Return the steps at which the measured load changes most, where the law jumps on the same ways."""
+    turns = np.sign(np.diff(model.curve.values))
+    way = np.cumsum(np.diff(turns, prepend=turns[0]) != 0.0)
+    change = np.abs(np.diff(model.curve.load))
+    return tuple(int(np.argmax(np.where(way == way[jump], change, -1.0))) for jump in jumps)
+
+
+def _neighbours(interval: Interval) -> Iterator[Interval]:
+    """Yield the intervals with one jump some steps on, or with two jumps one step on."""
+    each = np.eye(len(interval), dtype=int)
+    pairs = [a * one + b * two for i, one in enumerate(each) for two in each[:i] for a in (-1, 1) for b in (-1, 1)]
+    singles = [steps * one for one in each for steps in range(-_FARTHEST, _FARTHEST + 1) if steps]
+    for change in [*singles, *pairs]:
+        yield tuple((np.array(interval) + change).tolist())
+
+
+def _moved(model: Model, point: Point, interval: Interval, jumps: Jumps | None) -> Point | None:
+    """Return the point of an interval that is nearest by Newton's method; None where it finds none."""
+    (low, high), widths = model.bounds, np.diff(model.curve.values)
+    if not all(0 <= step < widths.size and widths[step] for step in interval):
+        return None
+    for _ in range(_NEWTON):
+        if jumps is None or jumps.control.size != len(interval):
+            return None
+        places, slopes = _places(model, interval, jumps)
+        sides, ends = np.concatenate([slopes, -slopes]), np.concatenate([1.0 - places, places]) - 2.0 * _INSIDE
+        step = _projected(np.zeros(point.x.size), sides, ends)
+        if not (sides @ step < ends + _INSIDE).all():
+            return None
+        point = model.point(np.clip(point.x + step, low, high))
+        if point.jumps == interval:
+            return point
+        jumps = model.jumps_at(point.x)
+    return None
+
+
+def _places(model: Model, interval: Interval, jumps: Jumps) -> tuple[Floats, Floats]:
+    """Return where jumps lie, 0 to 1 in an interval, and the derivatives [jump, parameter]."""
+    begin, width = model.curve.values[list(interval)], np.diff(model.curve.values)[list(interval)]
+    return (jumps.control - begin) / width, jumps.slopes / width[:, None]
+
+
+def _least(model: Model, point: Point) -> Point:
+    """Return the least squares in the interval of a point."""
+    for _ in range(_ITERATIONS):
+        before, trial = _cost(point), _improved(model, point)
+        if trial is None:
+            return point
+        point = trial
+        if _cost(point) > (1.0 - _LESS) * before:
             break
-        ahead = (aim - here) / way
-        level = cost(here)
-        if cost(aim) <= level:
-            return aim
-        far = _edge(cost, here, ahead, level, (0.0, way), _INSIDE)
-        jump = cost(here + (far + 2.0 * _INSIDE) * ahead) - level
-        if jump < _LEAST_JUMP:
-            break
-        limit = level + 0.5 * jump
-        normal = ahead.copy()
-        for side in np.linalg.svd(ahead[None])[2][1:]:
-            apart = _edge(cost, here + _APART * side, ahead, limit, (far - 1.0, far + 1.0), _ROUGHLY)
-            normal -= (apart - far) / _APART * side
-        normal /= np.linalg.norm(normal)
-        normals.append(normal)
-        ends.append(float(normal @ (here + far * ahead)) - _INSIDE)
-        here = here + max(far - _INSIDE, 0.0) * ahead
-    return here
+    return point
 
 
-def _edge(cost: Cost, start: Floats, ahead: Floats, limit: float, between: tuple[float, float], error: float) -> float:
-    """Return the distance ahead of a point up to which the cost is within a limit, by bisection to an error."""
-    low, high = between
-    while high - low > error:
-        middle = 0.5 * (low + high)
-        low, high = (low, middle) if cost(start + middle * ahead) > limit else (middle, high)
-    return low
+def _improved(model: Model, point: Point) -> Point | None:
+    """Return a better point of the same interval, as the linear law has it; None where there is none."""
+    left, sizes, right = np.linalg.svd(model.slopes(point.x), full_matrices=False)
+    axes, goal = right.T / np.maximum(sizes, _FLAT * sizes[0]), -left.T @ point.deviations
+    low, high = model.bounds
+    sides, ends = [np.eye(point.x.size), -np.eye(point.x.size)], [high - point.x, point.x - low]
+    for edged in (False, True):
+        jumps = model.jumps_at(point.x) if edged else None
+        if jumps is not None:
+            places, slopes = _places(model, point.jumps, jumps)
+            sides, ends = [*sides, slopes, -slopes], [*ends, 1.0 - _INSIDE - places, places - _INSIDE]
+        u = _projected(goal, np.concatenate(sides) @ axes, np.maximum(np.concatenate(ends), 0.0))
+        if _cost(point) * _LESS > goal @ goal - (goal - u) @ (goal - u):
+            return None
+        ahead = axes @ u
+        ahead /= max(np.abs(ahead).max() / _LONGEST, 1.0)
+        for _ in range(_HALVINGS if edged else 1):
+            trial = model.point(point.x + ahead)
+            if edged and trial.jumps != point.jumps:
+                trial = _moved(model, trial, point.jumps, model.jumps_at(trial.x)) or point
+            if trial.jumps == point.jumps and _cost(trial) < _cost(point):
+                return trial
+            ahead = 0.5 * ahead
+    return None
 
 
-def _projected(goal: Floats, normals: list[Floats], ends: list[float]) -> Floats:
-    """Return the point nearest to ``goal`` with normal . u <= end for each edge.
+def _projected(goal: Floats, sides: Floats, ends: Floats) -> Floats:
+    """Return the point nearest to ``goal`` with side . u <= end for each edge.
 
     C. L. Lawson, R. J. Hanson, Solving Least Squares Problems (1974), chapter 23: least distance programming.
     """
-    if not normals:
-        return goal
     from scipy.optimize import nnls
 
-    sides = np.array(normals)
-    excess = sides @ goal - np.array(ends)
+    lengths = np.linalg.norm(sides, axis=1)
+    sides, ends = sides[lengths > 0.0] / lengths[lengths > 0.0, None], ends[lengths > 0.0] / lengths[lengths > 0.0]
+    excess = sides @ goal - ends
+    if np.max(excess, initial=0.0) <= 0.0:
+        return goal
+    size = float(np.abs(excess).max())
     last = np.zeros(goal.size + 1)
     last[-1] = 1.0
-    multipliers, _ = nnls(np.vstack([-sides.T, excess]), last)
-    rest = np.append(-sides.T @ multipliers, float(excess @ multipliers) - 1.0)
-    return np.asarray(goal - rest[:-1] / rest[-1])
+    multipliers, _ = nnls(np.vstack([-sides.T, excess / size]), last)
+    rest = np.append(-sides.T @ multipliers, float(excess @ multipliers) / size - 1.0)
+    return np.asarray(goal - size * rest[:-1] / (rest[-1] or -np.inf))

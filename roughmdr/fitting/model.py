@@ -3,9 +3,10 @@
 import copy
 from collections.abc import Iterator
 from contextlib import contextmanager
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from roughmdr.aggregate import LoadingPath, LoadSeparation
 from roughmdr.batch.realization import simulate_realization
@@ -20,10 +21,35 @@ from roughmdr.scene import Scene, read
 from roughmdr.scene.keys import set_key
 from roughmdr.schema.toml_text import parse_toml
 
-_NONE: tuple[Floats, Floats] = np.empty(0), np.empty(0)
 _LEAST_ERROR = 1e-12  # relative error of the force of a contact
 _LONGEST_STEP = 0.01  # largest change of x in differences
 _JUMP = 0.5  # ratio of the differences to both sides of x, beyond which one of them holds a jump
+_LITTLE = 1e-5  # of x, in differences of the places of jumps
+_FINER, _REFINEMENTS = 64, 4  # steps in the place of one, and how often, in which the place of a jump is found
+
+
+class Point(NamedTuple):
+    """The law with certain parameters."""
+
+    x: Floats
+    deviations: Floats
+    """Law minus measurement, weighted; inf where the law cannot be computed."""
+    error: float
+    """Relative error of the law."""
+    jumps: tuple[int, ...]
+    """The steps after which the contact is made or lost."""
+
+
+class Jumps(NamedTuple):
+    """Where the contact is made and lost along the path, in order."""
+
+    control: Floats
+    """[m]"""
+    slopes: Floats
+    """Derivatives [jump, parameter] of the control."""
+
+
+_NONE = Point(np.empty(0), np.empty(0), 0.0, ())
 
 
 class Model:
@@ -39,11 +65,11 @@ class Model:
         self._table = parse_toml(scene.toml)
         self.curve = curve
         self.parameters: list[Parameter] = free_parameters(free, scene, self._table, curve)
+        self.bounds: tuple[Floats, Floats] = tuple(np.transpose([each.bounds for each in self.parameters]))
         source, layers = scene.asperities, (scene.interaction, scene.viscoelastic, scene.nominal)
         self._is_plain = source.node_count(2) == source.node_count(1) and all(layer is None for layer in layers)
         self.jumps = source.equal_heights and scene.work > 0.0
         self._path = LoadingPath.along(curve.values, unload=False, adhesive=scene.work > 0.0)
-        self._error = 0.0  # of the last law
         self.exact = True
         self.evaluations = 0
         self._last = _NONE
@@ -65,32 +91,32 @@ class Model:
         scene, quantity = self.scene(x), self.curve.quantity
         names = [quantity] if scene.nominal_area is None else [quantity, "model_error_curve"]
         names += ["stiffness"] * (self.curve.control == "remote")
-        law = simulate_realization(scene, self._path_in(scene, x), 0, names, "expected")
+        law = simulate_realization(scene, self._path_in(scene, x, self.curve.values), 0, names, "expected")
         if not np.isfinite(law.variables[quantity]).all():
             raise OutOfRange("the expected law is not finite")
         return law
 
-    def _load(self, x: Floats) -> Floats:
-        """Return the load alone of the law with these parameters; RoughmdrError where there is none."""
+    def _load(self, x: Floats, values: Floats) -> tuple[Floats, float]:
+        """Return the load of the law along a control, and its relative error; RoughmdrError where there is none."""
         self.evaluations += 1
         scene = self.scene(x)
-        path = self._path_in(scene, x)
+        path = self._path_in(scene, x, values)
         if not (self._is_plain and isinstance(path, LoadingPath)):
             law = simulate_realization(scene, path, 0, [self.curve.quantity], "expected")
-            self._error = law.numerical_error
-            return law.variables[self.curve.quantity]
+            return law.variables[self.curve.quantity], law.numerical_error
         modulus, adhesion = scene.effective_modulus, scene.adhesion_model
-        force, self._error = force_of_equal_shapes(scene.asperities, path, modulus, adhesion)
-        return force if self.curve.quantity == "force" else force / (scene.nominal_area or np.nan)
+        force, error = force_of_equal_shapes(scene.asperities, path, modulus, adhesion)
+        return (force if self.curve.quantity == "force" else force / (scene.nominal_area or np.nan)), error
 
-    def _path_in(self, scene: Scene, x: Floats) -> LoadingPath | MachinePath:
+    def _path_in(self, scene: Scene, x: Floats, values: Floats) -> LoadingPath | MachinePath:
         """Return the path of the flat or of its machine in the scene."""
-        if self.curve.control == "separation":
+        if self.curve.control == "separation" and values is self.curve.values:
             return self._path.relative_to(-self._offset(x))
-        steps = self.curve.values + self._offset(x)
-        if self.exact:
+        steps = values + self._offset(x)
+        if self.curve.control == "remote" and self.exact:
             return machine_path(scene, steps)
-        return LoadingPath.along(steps + self._stretch(scene), unload=False, adhesive=scene.work > 0.0)
+        stretch = 0.0 if self.curve.control == "separation" else self._stretch(scene)
+        return LoadingPath.along(steps + stretch, unload=False, adhesive=scene.work > 0.0)
 
     @contextmanager
     def at_measured_separations(self) -> Iterator[None]:
@@ -103,33 +129,68 @@ class Model:
 
     def deviations(self, x: Floats) -> Floats:
         """Return law minus measurement, weighted; inf where the law cannot be computed, as ``last_error`` says."""
-        if not np.array_equal(x, self._last[0]):
-            self._last = x.copy(), self._deviations(x)
-        return self._last[1]
+        return self.point(x).deviations
 
-    def _deviations(self, x: Floats) -> Floats:
+    def point(self, x: Floats) -> Point:
+        """Return the law with these parameters at the measured steps."""
+        if not np.array_equal(x, self._last.x):
+            self._last = self._point(x.copy())
+        return self._last
+
+    def _point(self, x: Floats) -> Point:
         try:
-            found = (self._load(x) - self.curve.load) / self.curve.weight
-        except RoughmdrError as error:
-            self.last_error = error
-            found = np.full(self.curve.load.size, np.inf)
-        return found if np.isfinite(found).all() else np.full(self.curve.load.size, np.inf)
+            load, error = self._load(x, self.curve.values)
+        except RoughmdrError as failure:
+            self.last_error = failure
+            load, error = np.full(self.curve.load.size, np.inf), 0.0
+        found = (load - self.curve.load) / self.curve.weight
+        if not np.isfinite(found).all():
+            return Point(x, np.full(found.size, np.inf), 0.0, ())
+        return Point(x, found, error, tuple(_changes(load != 0.0).tolist()))
+
+    def jumps_at(self, x: Floats) -> Jumps | None:
+        """Return where the contact is made and lost; None where the law, there or nearby, has no or other jumps."""
+        if not self.point(x).jumps:
+            return None
+        changes = np.where(x + _LITTLE > self.bounds[1], -_LITTLE, _LITTLE)
+        found = [self._control_of_jumps(each) for each in [x, *(x + np.diag(changes))]]
+        if len({each.size for each in found}) > 1 or not found[0].size:
+            return None
+        return Jumps(found[0], np.stack([each - found[0] for each in found[1:]], axis=1) / changes)
+
+    def _control_of_jumps(self, x: Floats) -> Floats:
+        """Return that at which the contact is made or lost, in order; empty where the law has none."""
+        at = np.array(self._point(x).jumps, dtype=int)
+        first, last = self.curve.values[at], self.curve.values[at + 1]
+        for _ in range(_REFINEMENTS if at.size else 0):
+            between = np.linspace(first, last, _FINER + 1)
+            finer = np.insert(self.curve.values, np.repeat(at + 1, _FINER + 1), between.T.ravel())
+            try:
+                force, _ = self._load(x, finer)
+            except RoughmdrError:
+                return np.empty(0)
+            found = _changes(force != 0.0)
+            if found.size != at.size:
+                return np.empty(0)
+            first, last = finer[found], finer[found + 1]
+        return np.asarray(0.5 * (first + last))
 
     def slopes(self, x: Floats) -> Floats:
         """Return the derivatives [step, parameter] of the deviations; RoughmdrError where the law has none.
 
         The step of the differences is that at which they are best, the cube root of the error of the law.
         """
-        middle = self.deviations(x)
-        step = min(max(self._error, _LEAST_ERROR) ** (1.0 / 3.0), _LONGEST_STEP)
-        return np.stack([self._slope(x, middle, step * direction) for direction in np.eye(x.size)], axis=1)
+        middle = self.point(x)
+        step = min(max(middle.error, _LEAST_ERROR) ** (1.0 / 3.0), _LONGEST_STEP)
+        return np.stack([self._slope(middle, step * direction) for direction in np.eye(x.size)], axis=1)
 
-    def _slope(self, x: Floats, middle: Floats, change: Floats) -> Floats:
+    def _slope(self, middle: Point, change: Floats) -> Floats:
         """Return the derivative in one direction from the differences to both sides, or to that which has a law.
 
         Where a contact jumps within one of them, the other is smaller by far, and alone is taken.
         """
-        pair = np.array([self._deviations(x + change) - middle, middle - self._deviations(x - change)])
+        x, here = middle.x, middle.deviations
+        pair = np.array([self._point(x + change).deviations - here, here - self._point(x - change).deviations])
         pair = pair[np.isfinite(pair).all(axis=1)] / change.sum()
         if not pair.size:
             raise self.last_error
@@ -166,6 +227,11 @@ class Model:
             if parameter.key != OFFSET:
                 set_key(table, parameter.key, parameter.value(float(number)))
         return table
+
+
+def _changes(contact: NDArray[np.bool_]) -> NDArray[np.intp]:
+    """Return the steps after which the contact is made or lost."""
+    return np.flatnonzero(np.diff(contact))
 
 
 def scene_to_fit(source: Any, changes: Any, curve: MeasuredCurve, free: list[str]) -> Scene:

@@ -1,11 +1,10 @@
 """The search for the parameters of least squares: from the start of the scene, and if need be from others."""
 
-from collections.abc import Callable
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from roughmdr.fitting.jumps import Surroundings, nearest_within
+from roughmdr.fitting.jumps import least_squares_between, with_measured_jumps
 from roughmdr.fitting.model import Model
 from roughmdr.fitting.residuals import is_systematic, relative_rms
 from roughmdr.numerics.arguments import Floats
@@ -15,8 +14,6 @@ if TYPE_CHECKING:
 
 _FTOL, _XTOL, _GTOL, _MAX_STEPS = 1e-10, 1e-7, 1e-12, 60
 _STARTS, _TRIED = 16, 3  # other starts a parameter, and how many of them are followed
-_MAX_ROUNDS = 8  # most changes to a better interval, or to a nearer edge, beside jumps
-_OTHER, _SAME = 1e-5, 1e-7  # changes of the sum of squares by which another interval is better, and by which an edge is
 _POOR = 0.05  # of the largest load: a fit with a larger deviation is sought from elsewhere too
 
 
@@ -47,9 +44,10 @@ def search(model: Model) -> Found:
 
 def _search(model: Model) -> Found:
     start = np.zeros(len(model.parameters))
-    found = [_follow(model, start)] if np.isfinite(model.deviations(start)).all() else []
+    first = with_measured_jumps(model, start) if model.jumps and model.exact else start
+    found = [_follow(model, first)] if np.isfinite(model.deviations(first)).all() else []
     if not found or _is_poor(model, found[0]):
-        starts = _other_starts(model)
+        starts = np.concatenate([_other_starts(model), start[None]]) if first.any() else _other_starts(model)
         costs = [float(np.sum(np.square(model.deviations(x)))) for x in starts]
         best = [starts[i] for i in np.argsort(costs)[:_TRIED] if np.isfinite(costs[i])]
         if not best and not found:
@@ -63,29 +61,9 @@ def _cost(found: Found) -> float:
 
 
 def _settled(model: Model, found: Found) -> Found:
-    """Return the least squares within a few standard errors of where the search by slopes has ended: see ``jumps``."""
-    low, high = np.transpose([parameter.bounds for parameter in model.parameters])
-    for _ in range(_MAX_ROUNDS):
-        near = Surroundings.of(found.deviations, found.slopes)
-
-        def place(u: Floats, near: Surroundings = near, middle: Floats = found.x) -> Floats:
-            return np.asarray(np.clip(middle + near.axes @ u, low, high))
-
-        def cost(u: Floats, near: Surroundings = near, place: Callable[[Floats], Floats] = place) -> float:
-            return float(np.sum(np.square(model.deviations(place(u))))) / near.variance
-
-        trials = near.around()
-        costs = list(map(cost, trials))
-        before = _cost(found) / near.variance
-        if min(costs) < (1.0 - _OTHER) * before:
-            found = _follow(model, place(trials[int(np.argmin(costs))]))
-            continue
-        u = np.zeros_like(near.goal) if near.at_rest else nearest_within(cost, near.goal)
-        if not cost(u) < (1.0 - _SAME) * before:
-            break
-        x = place(u)
-        found = Found(x, model.deviations(x), model.slopes(x), found.converged)
-    return found
+    """Return the least squares of all intervals between jumps: see ``jumps``."""
+    x = least_squares_between(model, found.x)
+    return Found(x, model.deviations(x), model.slopes(x), found.converged)
 
 
 def _is_poor(model: Model, found: Found) -> bool:
@@ -99,7 +77,7 @@ def _follow(model: Model, start: Floats) -> Found:
     if not np.isfinite(model.deviations(start)).all():
         raise model.last_error
 
-    low, high = np.transpose([parameter.bounds for parameter in model.parameters])
+    low, high = model.bounds
     result: OptimizeResult = least_squares(
         model.deviations,
         np.clip(start, low, high),

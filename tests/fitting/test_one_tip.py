@@ -8,7 +8,7 @@ import numpy as np
 import pandas as pd
 import pytest
 from measurements import inside
-from tips import COMBINATIONS, MODULUS, NOISES, OFFSET, WORK, Tip
+from tips import COMBINATIONS, MODULUS, NOISES, OFFSET, WORK, Floats, Tip, jkr
 
 import roughmdr as rm
 from roughmdr.errors import OutOfRange
@@ -63,6 +63,62 @@ def test_a_jump_beside_a_step_is_met() -> None:
         deviations = (fit.force_fitted.to_numpy() - measured.force.to_numpy()) / measured.force_error.to_numpy()
         assert float(np.sum(deviations**2)) < (1.0 + 1e-5) * tip.twin(measured, free, 2e-8).cost
         assert np.abs(deviations).max() < 6.0
+
+
+def on_a_gel(steps: Floats, noise: float, seed: int) -> tuple[pd.DataFrame, Floats]:
+    """A sphere of 10 um, 2 kPa, 1 mJ/m2, whose jumps are as high as its force; and its force without the noise."""
+    force = jkr(2e3, 1e-5, 1e-3, -(steps + 1e-7))
+    noisy = force + noise * np.abs(force).max() * np.random.default_rng(seed).standard_normal(force.size)
+    return pd.DataFrame({"separation": steps, "force": noisy}), force
+
+
+def fit_on_a_gel(
+    measured: pd.DataFrame, start: dict[str, float], free: tuple[str, ...] = (MODULUS, WORK, OFFSET)
+) -> Any:
+    tip = Tip("jkr", 1e-6, 1.5e3)
+    return rm.fit(measured, tip.scene(), free, set={MODULUS: 1.5e3, WORK: 1e-3} | start)
+
+
+@pytest.mark.parametrize(("noise", "seed"), [(0.01, 1), (0.01, 2), (0.01, 3), (0.001, 1)])
+def test_the_jump_lies_where_the_force_shows_it(noise: float, seed: int) -> None:
+    """Loading alone, which hardly tells modulus and work apart: the residual is that of the noise, and no more."""
+    steps = np.linspace(1e-6, -0.5e-6, 150)
+    measured, force = on_a_gel(steps, noise, seed)
+    true = float(np.sum(np.square(measured.force - force)))
+    fits = [fit_on_a_gel(measured, start) for start in ({}, {MODULUS: 5e3, WORK: 2e-3})]
+    for fit in fits:
+        assert float(np.sum(np.square(fit.force_fitted.to_numpy() - measured.force))) < true
+        assert np.flatnonzero(fit.force_fitted)[0] == np.flatnonzero(force)[0]
+        assert number(fit, WORK) == pytest.approx(1e-3, rel=3.0 * noise)
+        assert number(fit, MODULUS) == pytest.approx(number(fits[0], MODULUS), rel=1e-5)
+
+
+@pytest.mark.parametrize("depth", [2e-6, 1e-5])
+def test_every_start_leads_to_one_minimum(depth: float) -> None:
+    down = np.linspace(depth, -depth, 150)
+    measured, force = on_a_gel(np.concatenate([down, down[::-1]]), 0.01, 1)
+    starts = [{}, {MODULUS: 3e3}, {MODULUS: 750.0, WORK: 5e-4}, {MODULUS: 6e3, WORK: 2e-3}]
+    fits = [fit_on_a_gel(measured, start) for start in starts]
+    assert float(np.sum(np.square(fits[0].force_fitted.to_numpy() - measured.force))) < np.sum(
+        (measured.force - force) ** 2
+    )
+    for key in (MODULUS, WORK, OFFSET):
+        assert [number(fit, key) for fit in fits] == pytest.approx([number(fits[0], key)] * len(fits), rel=1e-5)
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_the_offset_alone_is_the_best_of_all(seed: int) -> None:
+    """As no other parameter gives way, each jump that it moves over a step bounds it."""
+    down = np.linspace(1e-5, -1e-5, 150)
+    steps = np.concatenate([down, down[::-1]])
+    measured, _ = on_a_gel(steps, 0.01, seed)
+    fit = fit_on_a_gel(measured, {}, (OFFSET,))
+
+    def cost(force: Floats) -> float:
+        return float(np.sum(np.square(force - measured.force.to_numpy())))
+
+    scanned = [cost(jkr(2e3, 1e-5, 1e-3, -(steps + offset))) for offset in np.linspace(-1e-7, 3e-7, 2001)]
+    assert cost(fit.force_fitted.to_numpy()) < min(scanned) * (1.0 + 1e-9)
 
 
 def test_behind_a_cantilever() -> None:
