@@ -16,7 +16,7 @@ Interval = tuple[int, ...]
 """The steps after which the contact is made or lost."""
 
 _FLAT = 1e-6  # of the largest slope: smaller ones tell no standard error
-_INSIDE = 1e-5  # of a step, from the edges of an interval to where it ends here
+_INSIDE = 1e-6  # of a step, from the edges of an interval to where it ends here
 _NEWTON, _ITERATIONS, _HALVINGS = 4, 20, 8
 _LONGEST = 1.0  # of x, in an iteration
 _LESS = 1e-11  # of the sum of squares: a smaller decrease ends the iterations
