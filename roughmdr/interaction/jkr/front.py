@@ -23,7 +23,7 @@ from roughmdr.interaction.placed_asperities import Placed
 from roughmdr.numerics.arguments import Floats
 
 _LONGEST = 0.5  # way on which pairs that overlap stay as they are where the flat rises, over its depth
-_NEAR = 1e-5  # of the natural depth: where an event happens, and where the flat stands for the pairs that overlap then
+_NEAR = 1e-6  # of the natural depth: where an event happens, and where the flat stands for the pairs that overlap then
 _MOST_WAYS = 10_000  # to one separation: more lead nowhere
 _AT_REST = 1e-9  # residual over the natural depth of contacts for which the same pairs overlap as before
 _GROWTH = 1.3  # of the number of asperities that are looked at, where one that was left out may touch
