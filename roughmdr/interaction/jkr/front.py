@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roughmdr.errors import OutOfRange
+from roughmdr.interaction import close
 from roughmdr.interaction.contacts import Asperities
 from roughmdr.interaction.dense import Dense
 from roughmdr.interaction.green import below_all
@@ -21,8 +22,9 @@ from roughmdr.interaction.jkr.lone import Surface
 from roughmdr.interaction.placed_asperities import Placed
 from roughmdr.numerics.arguments import Floats
 
-_LONGEST = 0.5  # longest rise of the flat with the same overlaps, over its depth below the highest asperity
-_NEARER, _LEAST = 0.9, 1e-11  # share of the way to an event to go at a time; least way, over the natural depth
+_LONGEST = 0.5  # way on which pairs that overlap stay as they are where the flat rises, over its depth
+_NEAR = 1e-6  # of the natural depth: where an event happens, and where the flat stands for the pairs that overlap then
+_MOST_WAYS = 10_000  # to one separation: more lead nowhere
 _AT_REST = 1e-9  # residual over the natural depth of contacts for which the same pairs overlap as before
 _GROWTH = 1.3  # of the number of asperities that are looked at, where one that was left out may touch
 _MARGIN = 0.25  # of the natural depth, within which asperities out of contact are looked at
@@ -114,9 +116,11 @@ class Front:
         new = evaluate(self.problem, inside, t, load, state.separation, none(self.problem))
         return new._replace(factors=state.factors)
 
-    def _settled(self, state: State, h: float) -> tuple[State, list[Piece]]:
-        """Return the state with those pairs overlapping that do so where the flat stands at h, and what jumps then."""
-        pairs = self.problem.pairs
+    def _settled(self, state: State, pairs: close.Pairs, h: float) -> tuple[State, list[Piece]]:
+        """Return the state with those pairs overlapping that do so where the flat stands at h, and what jumps then.
+
+        Before, ``pairs`` overlapped.
+        """
         self.stand_at(h)
         begin, problem = self._fitted(state), self.problem
         if coincident.are_same(pairs, problem.pairs) or not begin.inside.any():
@@ -154,51 +158,68 @@ class Front:
         NoEquilibriumError where no equilibrium is found.
         """
         state, pieces = self._towards(state, h)
-        while state.separation != h:
+        for _ in range(_MOST_WAYS):
+            if state.separation == h:
+                return state, pieces
             state, more = self._towards(state, h)
             pieces += more
-        return state, pieces
+        raise NoEquilibriumError
 
     def _towards(self, state: State, h: float) -> tuple[State, list[Piece]]:
-        """Go towards a separation; where pairs come to overlap on the way, or cease to, no farther than to an event.
+        """Go towards a separation; where other pairs overlap there, no farther than to an event.
 
-        It is narrowed down, so that the pairs overlap as they do where it happens.
+        Without one, pairs overlap all along as at the lower end of the way.
         """
         begin, target, pairs = state.separation, h, self.problem.pairs
         if h > begin and pairs.members.size and state.inside.any():
             target = min(h, begin + _LONGEST * max(self.depth, self.top - begin))
-        least = max(_LEAST * self.depth, 8.0 * float(np.spacing(max(abs(begin), abs(self.top)))))
-        while True:
-            new, pieces = self._tried(state, target)
-            at = next((piece.end.separation for piece in pieces if piece.event is not None), target)
-            deepest = pairs if target > begin else self.problem.pairs
-            if at == target or not deepest.members.size or abs(target - begin) <= 4.0 * least:
-                return new, pieces
-            self.stand_at(at)
-            there = self.problem.pairs
-            self.stand_at(target)
-            if coincident.are_same(there, self.problem.pairs) and coincident.are_same(there, pairs):
-                return new, pieces
-            way = max(_NEARER * abs(at - begin), 2.0 * least)
-            self.stand_at(begin)
-            target = begin + math.copysign(way, h - begin)
+        self.stand_at(max(begin, target))
+        above = self.problem.pairs
+        self.stand_at(min(begin, target))
+        same = coincident.are_same(above, self.problem.pairs)
+        new, pieces = self._tried(state, pairs, target, to_event=not same)
+        if not same and new.separation != target and abs(new.separation - begin) < abs(target - begin):
+            return self._to_event(state, pairs, target, new.separation)
+        if target > begin:
+            new, after = self._settled(new, self.problem.pairs, target)
+            pieces += after
+        return new, pieces
 
-    def _tried(self, state: State, h: float) -> tuple[State, list[Piece]]:
-        """Return the state at a separation, and the way to it; the pairs overlap all along as at its lower end."""
-        before, after = list[Piece](), list[Piece]()
-        if h <= state.separation:
-            state, before = self._settled(state, h)
-        new, pieces = self._advance(state, h)
+    def _to_event(self, state: State, pairs: close.Pairs, h: float, at: float) -> tuple[State, list[Piece]]:
+        """Go to the first event on the way to a separation, with the pairs that overlap there; it is ``at`` or near it.
+
+        If it is not found there the state before it is returned.
+        """
+        begin, low, high = state.separation, state.separation, h
+        near = max(_NEAR * self.depth, 8.0 * float(np.spacing(max(abs(begin), abs(self.top)))))
+        while abs(high - low) > near:
+            self.stand_at(at)
+            new, pieces = self._tried(state, pairs, h, to_event=True)
+            found = new.separation
+            if abs(found - at) <= near:
+                return new, pieces
+            low, high = (at, high) if abs(found - begin) > abs(at - begin) else (low, at)
+            at = found if min(low, high) < found < max(low, high) else low + 0.5 * (high - low)
+        self.stand_at(low)
+        return self._tried(state, pairs, low if low != begin else high, to_event=True)
+
+    def _tried(self, state: State, pairs: close.Pairs, h: float, *, to_event: bool) -> tuple[State, list[Piece]]:
+        """Return the state at a separation or at the first event, and the way there; before, ``pairs`` overlapped."""
+        state, before = self._settled(state, pairs, self._stands)
+        if before and to_event:
+            return state, before
+        new, pieces = self._advance(state, h, to_event=to_event)
         while not self._complete(new):
             self._take(math.ceil(_GROWTH * state.t.size) + 1)
             state = self._fitted(state)
-            new, pieces = self._advance(state, h)
-        if h > state.separation:
-            new, after = self._settled(new, h)
-        return new, [*before, *pieces, *after]
+            new, pieces = self._advance(state, h, to_event=to_event)
+        return new, [*before, *pieces]
 
-    def _advance(self, state: State, h: float) -> tuple[State, list[Piece]]:
-        """Return the state at a separation, and the way to it; only asperities near contact are looked at meanwhile."""
+    def _advance(self, state: State, h: float, *, to_event: bool) -> tuple[State, list[Piece]]:
+        """Return the state at a separation or at the first event, and the way there.
+
+        Only asperities near contact are looked at meanwhile.
+        """
         margin = _MARGIN * float(self.problem.natural.max(initial=0.0))
         while True:
             near = state.gap + max(state.separation - h, 0.0) > -margin
@@ -206,7 +227,7 @@ class Front:
             few, kept, pieces = self.window, self.kept, list[Piece]()
             part = evaluate(few, state.inside[kept], state.t[kept], state.load[kept], state.separation, none(few))
             part, event = part._replace(factors=state.factors), None
-            while not pieces or event is not None:
+            while not pieces or (event is not None and not to_event):
                 end, event = advance(few, part, Drive(h - part.separation, none(few)))
                 rest, one = (end, None) if event is None else avalanche(few, end, event)
                 bare = [each._replace(factors=None) for each in (part, end, rest)]  # a long way has many, each large

@@ -7,6 +7,8 @@ lost, to the first separation at which its demand has passed that of the machine
 import math
 from typing import NamedTuple
 
+import numpy as np
+
 from roughmdr.interaction.jkr.account import Account
 from roughmdr.interaction.jkr.branch import NoEquilibriumError
 from roughmdr.interaction.jkr.equilibrium import State, energy
@@ -19,8 +21,9 @@ _LONGEST, _SHORTEST = 0.5, 1e-4  # way of the flat at a time, over the natural d
 _OVERSHOOT = 1.2  # over the way to where the demand would be passed
 _SHORTER, _MAX_SHORTER = 0.1, 4
 _MAX_WAYS = 100_000
-_MAX_TRIALS = 20  # secant steps to where a demand is met, as pairs come to overlap
-_SETTLED = 1e-12  # last of these steps, over the natural depth
+_MAX_TRIALS = 20  # of where the demand is met, as pairs come to overlap
+_SETTLED = 1e-12  # of the natural depth, to which that is found
+_OFF = 1e-10  # of the parts of a demand: a state that is off by more does not meet it
 
 
 class _Stop(NamedTuple):
@@ -168,7 +171,10 @@ class Hanging:
         return None
 
     def _at_level(self, climb: Climb, state: State, level: float, slope: float) -> State:
-        """Return the contacts where the demand is met, from near it, with the pairs that overlap there."""
+        """Return the contacts where the demand is met, from near it, with the pairs that overlap there.
+
+        NoEquilibriumError where it is not.
+        """
         if not self._front.problem.pairs.members.size:
             return state
         for _ in range(_MAX_TRIALS):
@@ -181,6 +187,10 @@ class Hanging:
                 self._account.pass_over(piece)
             gained = (climb.value(state) - value) / way
             slope = gained if gained > 0.0 else slope
+        weight, compliance = self._machine
+        size = weight * max(self._front.depth, abs(state.separation)) + compliance * float(np.abs(state.load).sum())
+        if abs(climb.value(state) - level) > _OFF * size:
+            raise NoEquilibriumError
         return state
 
     def _stop(self, state: State) -> _Stop:
