@@ -8,14 +8,10 @@ moment of a flat punch, 2/3 P a^2. It is felt by another at D as
 which goes to 1/D + (a^2 + b^2)/(6 D^3) and is smooth in the radii. At D = 0 it is 1.535/a for equal radii, below the
 pi/2/a of a contact's own compliance, so that the coupling stays positive definite at any overlap.
 
-Which pairs are taken so, and how far, is settled by where the flat stands: from the radii that the contacts would have
-there alone, those of the jump where a contact is made. So a flat that comes back finds the same forces where no contact
-has jumped, and what comes later on a path changes nothing. Where the flat stands, the energy is one function of radii
-and loads; on the way through the distances at which a pair changes over it is no longer the work of the flat alone.
+Which pairs are taken so is settled for a whole path, from bounds of the radii: an energy must not depend on its past.
 """
 
 import math
-from copy import copy
 from typing import NamedTuple
 
 import numpy as np
@@ -23,7 +19,6 @@ from scipy.special import i0e, i1e
 
 from roughmdr.interaction import close
 from roughmdr.interaction.close import FULL, NONE
-from roughmdr.interaction.dense import Dense
 from roughmdr.interaction.green import point_load
 from roughmdr.interaction.neighbours import within_reach
 from roughmdr.numerics.arguments import Floats
@@ -49,23 +44,9 @@ def find(at: Floats, bound: Floats, sides: Floats | None) -> close.Pairs:
     return close.Pairs(members, np.column_stack([apart, away]), u * u * (3.0 - 2.0 * u), bound)
 
 
-def without(pairs: close.Pairs, coupling: Dense) -> Dense:
-    """Return the coupling without the expansion of the pairs, as far as they share."""
-    if not pairs.members.size:
-        return coupling
-    rest = copy(coupling)
-    rest.matrices, rest._last = coupling.matrices.copy(), None
-    _take_out(pairs, rest.matrices)
-    return rest
-
-
-def are_same(pairs: close.Pairs, others: close.Pairs) -> bool:
-    """Return whether the same pairs overlap as much."""
-    return np.array_equal(pairs.members, others.members) and np.array_equal(pairs.share, others.share)
-
-
 @njit
-def _take_out(pairs: close.Pairs, matrices: Floats) -> None:
+def take_out(pairs: close.Pairs, matrices: Floats) -> None:
+    """Take the expansion of the pairs out of the matrices of G, its slopes and its Laplacian, as far as they share."""
     for number in range(pairs.share.size):
         i, j = pairs.members[number]
         share = pairs.share[number]

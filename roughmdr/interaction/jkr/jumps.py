@@ -9,7 +9,6 @@ from roughmdr.interaction.jkr.equilibrium import Drive, Problem, State, energy, 
 from roughmdr.interaction.jkr.events import Event, advance
 from roughmdr.interaction.jkr.lone import Surface
 from roughmdr.interaction.jkr.newton import at_rest
-from roughmdr.numerics.arguments import Floats
 
 _MAX_JUMPS = 100  # times the number of asperities
 
@@ -49,15 +48,10 @@ def jump(problem: Problem, state: State, event: Event) -> State:
         load[i] = kernels.lone_load(found, surface, problem.work, i, problem.asperities)
     outer = state.outer.copy()
     outer[1:4] += field_of(problem, state.load - load)[1:]
-    return _held(problem, evaluate(problem, inside, t, load, state.separation, outer), state.potential)
-
-
-def _held(problem: Problem, new: State, potential: Floats) -> State:
-    """Return contacts at rest as they are: what is off goes into the outer field, with the ``potential`` before."""
-    outer = new.outer.copy()
-    outer[0] += np.where(new.inside, new.gap, potential - new.potential)
+    new = evaluate(problem, inside, t, load, state.separation, outer)
+    outer[0] += np.where(inside, new.gap, state.potential - new.potential)
     outer[4] -= 2.0 * new.release * new.edge
-    return evaluate(problem, new.inside, new.t, new.load, new.separation, outer)
+    return evaluate(problem, inside, t, load, state.separation, outer)
 
 
 def avalanche(problem: Problem, state: State, event: Event) -> tuple[State, Avalanche]:
@@ -65,23 +59,13 @@ def avalanche(problem: Problem, state: State, event: Event) -> tuple[State, Aval
 
     The load that a jump sheds is handed to the others little by little; at the next fold another contact jumps.
     """
-    return _relaxed(problem, jump(problem, state, event), energy(problem, state), 1)
-
-
-def settled(problem: Problem, state: State) -> tuple[State, Avalanche]:
-    """Return the state at rest of contacts that were so before their coupling changed, and what jumped meanwhile."""
-    new = evaluate(problem, state.inside, state.t, state.load, state.separation, np.zeros_like(state.outer))
-    return _relaxed(problem, _held(problem, new, state.potential), energy(problem, new), 0)
-
-
-def _relaxed(problem: Problem, state: State, before: float, size: int) -> tuple[State, Avalanche]:
-    """Hand the outer field to contacts that are at rest under it; ``before`` and ``size``: energy and jumps so far."""
-    state, event = advance(problem, state, Drive(0.0, -state.outer))
-    while event is not None:
+    before, size = energy(problem, state), 0
+    next_event: Event | None = event
+    while next_event is not None:
         if size > _MAX_JUMPS * state.t.size:
             raise NoEquilibriumError
-        state, size = jump(problem, state, event), size + 1
-        state, event = advance(problem, state, Drive(0.0, -state.outer))
+        state, size = jump(problem, state, next_event), size + 1
+        state, next_event = advance(problem, state, Drive(0.0, -state.outer))
     rest = at_rest(
         problem,
         evaluate(problem, state.inside, state.t, state.load, state.separation, np.zeros_like(state.outer))._replace(

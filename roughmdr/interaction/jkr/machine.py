@@ -7,8 +7,6 @@ lost, to the first separation at which its demand has passed that of the machine
 import math
 from typing import NamedTuple
 
-import numpy as np
-
 from roughmdr.interaction.jkr.account import Account
 from roughmdr.interaction.jkr.branch import NoEquilibriumError
 from roughmdr.interaction.jkr.equilibrium import State, energy
@@ -21,9 +19,6 @@ _LONGEST, _SHORTEST = 0.5, 1e-4  # way of the flat at a time, over the natural d
 _OVERSHOOT = 1.2  # over the way to where the demand would be passed
 _SHORTER, _MAX_SHORTER = 0.1, 4
 _MAX_WAYS = 100_000
-_MAX_TRIALS = 20  # of where the demand is met, as pairs come to overlap
-_SETTLED = 1e-12  # of the natural depth, to which that is found
-_OFF = 1e-10  # of the parts of a demand: a state that is off by more does not meet it
 
 
 class _Stop(NamedTuple):
@@ -46,6 +41,8 @@ class Hanging:
         self._clear = clear
         self._state, self._flown = front.parted(front.top), True
         self._slope = 0.0
+        self.lowest = math.inf
+        """The least separation so far."""
 
     def follow(self, leg: Leg) -> None:
         """Follow a leg, with its demand in SI, and account for its steps."""
@@ -54,6 +51,7 @@ class Hanging:
             if demand != last:
                 self._go(climb, climb.sign * demand / self._unit)
             last = demand
+            self.lowest = min(self.lowest, self._state.separation)
             self._account.stand(self._state, self._place(demand), rises=leg.rises)
 
     def _place(self, demand: float) -> float:
@@ -156,7 +154,7 @@ class Hanging:
         if met is not None and met.passed:
             self._slope = met.slope
             self._account.pass_over(piece._replace(end=met.state, event=None, avalanche=None, rest=met.state))
-            return self._stop(self._at_level(climb, self._front.stopped(piece.kept, met.state), level, met.slope))
+            return self._stop(self._front.whole(piece.kept, met.state))
         before = self._account.dissipated
         self._account.pass_over(piece)
         end, rest = climb.value(piece.end), climb.value(piece.rest)
@@ -164,34 +162,11 @@ class Hanging:
         if piece.event is not None:
             self._slope = 0.0
         if peak is not None:
-            kept, whole = piece.kept, self._front.stopped
+            kept, whole = piece.kept, self._front.whole
             return _Stop(whole(kept, peak), whole(kept, piece.rest), before)
         if piece.event is not None and piece.rest.inside.any() and rest >= level:
-            return self._stop(self._front.stopped(piece.kept, piece.rest))
+            return self._stop(self._front.whole(piece.kept, piece.rest))
         return None
-
-    def _at_level(self, climb: Climb, state: State, level: float, slope: float) -> State:
-        """Return the contacts where the demand is met, from near it, with the pairs that overlap there.
-
-        NoEquilibriumError where it is not.
-        """
-        if not self._front.problem.pairs.members.size:
-            return state
-        for _ in range(_MAX_TRIALS):
-            value = climb.value(state)
-            way = (level - value) / slope if slope > 0.0 else 0.0
-            if abs(way) <= _SETTLED * self._front.depth:
-                break
-            state, pieces = self._front.go(state, state.separation + climb.sign * way)
-            for piece in pieces:
-                self._account.pass_over(piece)
-            gained = (climb.value(state) - value) / way
-            slope = gained if gained > 0.0 else slope
-        weight, compliance = self._machine
-        size = weight * max(self._front.depth, abs(state.separation)) + compliance * float(np.abs(state.load).sum())
-        if abs(climb.value(state) - level) > _OFF * size:
-            raise NoEquilibriumError
-        return state
 
     def _stop(self, state: State) -> _Stop:
         return _Stop(state, None, self._account.dissipated)
