@@ -224,7 +224,7 @@ def one_of_its_kind(key: str) -> str:
     return "nominal.parameter" if section == "nominal" and last not in ("shape", "error") else key
 
 
-OF_FILES = {f"asperities.{name}" for name in ("file", "size", "unit", "channel", "detrend", "cutoff")}
+OF_FILES = {f"asperities.{name}" for name in ("file", "size", "unit", "channel", "detrend", "cutoff", "outliers")}
 """Keys of maps and saved ensembles, which have tests of their own."""
 OTHER_KEYS = {"asperities.source", "asperities.shape", "nominal.shape"}
 """Keys that other keys go with, so that hardly any scene stays valid with another name."""
