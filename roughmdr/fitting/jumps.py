@@ -15,12 +15,12 @@ from roughmdr.numerics.arguments import Floats
 Interval = tuple[int, ...]
 """The steps after which the contact is made or lost."""
 
-_FLAT = 1e-6  # of the largest slope: smaller ones tell no standard error
-_INSIDE = 1e-6  # of a step, from the edges of an interval to where it ends here
+_FLAT = 1e-6  # least slope over the largest: smaller ones tell no standard error
+_INSIDE = 1e-6  # margin at the edges of an interval, over the step
 _NEWTON, _ITERATIONS, _HALVINGS = 4, 20, 8
-_LONGEST = 1.0  # of x, in an iteration
-_LESS = 1e-11  # of the sum of squares: a smaller decrease ends the iterations
-_LEAST_GAIN = 1e-7  # of the sum of squares, by which another interval is better
+_LONGEST = 1.0  # longest change of x in an iteration
+_LESS = 1e-11  # relative decrease of the sum of squares below which iterations end
+_LEAST_GAIN = 1e-7  # relative decrease of the sum of squares by which another interval is better
 _FARTHEST = 2  # steps to the neighbours of an interval
 
 

@@ -24,7 +24,7 @@ from roughmdr.schema.toml_text import parse_toml
 _LEAST_ERROR = 1e-12  # relative error of the force of a contact
 _LONGEST_STEP = 0.01  # largest change of x in differences
 _JUMP = 0.5  # ratio of the differences to both sides of x, beyond which one of them holds a jump
-_LITTLE = 1e-5  # of x, in differences of the places of jumps
+_LITTLE = 1e-5  # change of x in differences of the places of jumps
 _FINER, _REFINEMENTS = 64, 4  # steps in the place of one, and how often, in which the place of a jump is found
 
 

@@ -10,7 +10,7 @@ from roughmdr.fitting.search import Found
 from roughmdr.numerics.arguments import Floats
 
 _LEVEL = 0.95
-_LEAST_SLOPE = 1e-6  # of the largest: a parameter, or a combination, that changes the law by less is not known at all
+_LEAST_SLOPE = 1e-6  # least slope over the largest: what changes the law by less is not known at all
 _LEAST_FREEDOM = 1e-6  # of a step: one that fits whatever it measures says nothing of the noise
 _UNKNOWN = 10.0  # standard error of x along a combination that is not known at all, however small the noise
 
