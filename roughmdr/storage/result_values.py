@@ -35,7 +35,7 @@ _NOT_NEGATIVE = {
     *(name for name, declared in (PULL_OFF | RUN_VARIABLES).items() if declared.units in ("1", "m2", "s")),
     *(name for name in LAW_VARIABLES if name.endswith(("_count", "_error", "_error_curve")) or name == "time"),
 }
-"""What is told of runs, and errors, counts and times of laws; the difference of two laws has negative areas, too."""
+"""Diagnostics of runs, and errors, counts and times of laws; the difference of two laws may have negative areas."""
 _ROUNDING = 1e-9  # share of the largest magnitude by which a sum may be off its bounds
 
 
