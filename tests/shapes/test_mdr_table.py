@@ -221,7 +221,8 @@ def test_coupled_tables_of_paraboloids_are_coupled_paraboloids(work: float) -> N
         ([1.0, math.nan], [1.0, 2.0], r"a\[1\] is nan; it must be finite"),
         ([0.0, 1.0], [1.0, 2.0], r"a\[0\] is 0 m; a must rise"),
         ([1.0, 2.0], [2.0, 2.0], r"g\[1\] is 2 m after 2 m; g must rise"),
-        (["x"], [1.0], "it must be a list of numbers"),
+        ([{}], [1.0], "it must be a list of numbers"),
+        (["x"], [1.0], "a is 'x': expected a number in m or a string like"),
         ([1e-120], [1.0], "between 1e-100 and 1e100"),
     ],
 )
