@@ -163,9 +163,7 @@ def _levelled(height: Floats, unit: str) -> Iterator[_Finding]:
     values = height.flat[plateau.points]
     plane = f"{_at(height, plateau.points)} from {values.min():.4g} to {values.max():.4g} {unit} on one smooth plane"
     if plateau.is_exact:
-        text = (
-            f"its highest part is clipped, and was levelled after that: {plane}, with none above; {_CLIPPED}"
-        )
+        text = f"its highest part is clipped, and was levelled after that: {plane}, with none above; {_CLIPPED}"
     else:
         text = (
             f"its tops are flat: {plane} but for noise of {plateau.thickness:.2g} {unit}, with none above. Either the "
