@@ -99,7 +99,7 @@ def _spacing(header: dict[str, Said], names: tuple[str, ...], points: int) -> tu
     """
     for name in names:
         said = header.get(name)
-        if said is None or not said.number > 0.0:
+        if said is None or not 0.0 < said.number < math.inf:
             continue
         if name.startswith("step"):
             return said.number, said.unit
