@@ -73,6 +73,30 @@ def test_vacancies_are_made_only_if_asked_for() -> None:
 
 
 @pytest.mark.parametrize(
+    ("changes", "unit", "within"),
+    [
+        ({"placement": "square", "count": 900}, 1.0, 5e-3),
+        ({"placement": "hexagonal", "count": 900}, 1e-6, 5e-3),
+        ({"placement": "hexagonal", "count": 900, "vacancies": True}, 1e-3, 0.02),
+    ],
+)
+def test_an_empty_disc_stands_for_the_neighbours_that_a_site_lacks(
+    changes: dict[str, Any], unit: float, within: float
+) -> None:
+    """The mean of exp(-r^2/L^2)/r over all others is that of a uniform density from the edge of the disc on."""
+    placed = generate(**changes, patch=unit)
+    sides = np.array([placed.attrs.get(name, unit) for name in ("patch_x", "patch_y")])
+    points, length = np.column_stack([placed.x, placed.y]), 0.15 * unit
+    steps = points[None, :, :] - points[:450, None, :]
+    images = np.moveaxis(np.mgrid[-1:2, -1:2], 0, -1).reshape(-1, 2) * sides
+    r = np.hypot(*np.moveaxis(steps[:, :, None, :] + images, -1, 0))
+    others = np.exp(-((r / length) ** 2)) / np.where(r > 0.0, r, np.inf)
+    density = 900 / sides.prod()
+    disc = np.sqrt(np.pi) * length / 2.0 - others.sum() / len(steps) / (2.0 * np.pi * density)
+    assert placed.attrs["exclusion_distance"] == pytest.approx(disc, rel=within)
+
+
+@pytest.mark.parametrize(
     ("changes", "says"),
     [
         ({"placement": "hexagonal", "count": 3601}, "3601 asperities fill no hexagonal lattice on a patch"),

@@ -1,5 +1,7 @@
 """Heights that were not measured are named and left out, or kept; true peaks of rough and of steep maps are none."""
 
+import itertools
+import re
 from collections.abc import Callable
 from pathlib import Path
 
@@ -113,6 +115,22 @@ def test_spikes_are_found(tmp_path: Path, sigmas: float, hurst: float) -> None:
     assert float(kept.height.max()) > 2.0 * float(generate(tmp_path, rough(hurst=hurst)).height.max()) or sigmas < 8.0
 
 
+@pytest.mark.parametrize("periodic", [False, True])
+@pytest.mark.parametrize("shape", [(1, 2), (2, 1), (2, 2)])
+@pytest.mark.parametrize("corner", [(0, 20), (30, 40), (62, 50), (20, 62)])
+def test_spikes_of_up_to_two_by_two_points_are_found(
+    shape: tuple[int, int], corner: tuple[int, int], *, periodic: bool
+) -> None:
+    height = rough(points=64)
+    at = np.ix_(*(start + np.arange(n) for start, n in zip(corner, shape, strict=True)))
+    height[at] += 8.0 * height.std() + np.random.default_rng(0).normal(size=shape)
+    left_out = height.copy()
+    assert leave_out_outliers(left_out, "undefined", "nm", periodic=periodic) == {"outliers": shape[0] * shape[1]}
+    assert np.isnan(left_out[at]).all()
+    with pytest.raises(rm.RoughmdrError, match=f"{shape[0] * shape[1]} heights, the first at point {corner[0] + 1} "):
+        leave_out_outliers(height, None, "nm", periodic=periodic)
+
+
 def test_pits_of_one_point_are_only_told_of(tmp_path: Path) -> None:
     height = rough()
     height[20, 30] -= 6.0 * height.std()
@@ -131,6 +149,60 @@ def test_a_clipped_top_is_refused_and_a_clipped_bottom_told_of(tmp_path: Path) -
         lowest = generate(tmp_path, np.maximum(height, bottom))
     assert lowest.sizes["asperity"] == pytest.approx(generate(tmp_path, height).sizes["asperity"], abs=2)
     assert generate(tmp_path, np.minimum(height, top), outliers="kept").sizes["asperity"] > 0
+
+
+def levelled(height: np.ndarray, degree: int) -> np.ndarray:
+    """Return heights without the polynomial that instruments remove."""
+    x, y = np.meshgrid(*(np.linspace(-1.0, 1.0, n) for n in height.shape), indexing="ij")
+    powers = np.stack([x**i * y**j for i in range(degree + 1) for j in range(degree + 1 - i)], axis=-1)
+    flat = powers.reshape(height.size, -1)
+    return height - powers @ np.linalg.lstsq(flat, height.ravel(), rcond=None)[0]
+
+
+def clipped(tilt: float, degree: int, noise: float = 0.0, share: float = 0.05) -> np.ndarray:
+    """Return a map [nm] of a detector at the end of its range, levelled after that, with noise over its r.m.s."""
+    height = rough()
+    height += tilt * height.std() * np.arange(64.0)[:, None] / 64.0
+    height = levelled(np.minimum(height, np.quantile(height, 1.0 - share)), degree)
+    return height + noise * height.std() * np.random.default_rng(0).normal(size=height.shape)
+
+
+@pytest.mark.parametrize(("tilt", "degree"), [(1.0, 1), (4.0, 1), (1.0, 2), (0.0, 2)])
+@pytest.mark.parametrize("digits", [3, 16])
+def test_a_clipped_top_that_was_levelled_is_refused(tmp_path: Path, tilt: float, degree: int, digits: int) -> None:
+    height = np.round(clipped(tilt, degree), digits)
+    says = r"highest part is clipped, and was levelled after that: (\d+) heights, the first at point .* larger range"
+    for keys in ({}, {"outliers": "undefined"}):
+        with pytest.raises(rm.SceneError, match=says) as refused:
+            generate(tmp_path, height, **keys)
+        count = re.search(says, str(refused.value))
+        assert count is not None
+        assert 0.7 < int(count[1]) / (0.05 * height.size) < 1.1
+    assert generate(tmp_path, height, outliers="kept").sizes["asperity"] > 0
+    assert leave_out_outliers(-height, None, "nm", periodic=False) == {}  # of pits nothing follows
+
+
+@pytest.mark.parametrize("tilt", [0.0, 2.0])
+@pytest.mark.parametrize("noise", [0.003, 0.01])
+def test_flat_tops_with_noise_are_told_of_as_clipped_or_worn(tmp_path: Path, tilt: float, noise: float) -> None:
+    height = clipped(tilt, 1, noise, share=0.15)
+    with pytest.warns(rm.errors.LimitWarning, match=r"tops are flat: .* nm on one smooth plane .* Either .* or they"):
+        found = generate(tmp_path, height)
+    told = re.search(r"noise of ([\d.]+) nm", found.attrs["doubtful"])
+    assert told is not None
+    assert float(told[1]) == pytest.approx(noise * height.std(), rel=0.3)
+
+
+def test_tops_with_a_roughness_of_their_own_are_not_clipped() -> None:
+    """Lapped and honed faces, spheres, domes: their tops are smooth, but neither planes nor white noise."""
+    x, y = np.arange(64.0)[:, None], np.arange(96.0)[None, :]
+    for seed, own in itertools.product(range(4), (0.003, 0.03, 0.1)):
+        height = rough(seed)
+        lapped = np.minimum(height, height.std() * (0.5 + own * rough(seed + 50) / height.std()))
+        assert leave_out_outliers(lapped, None, "nm", periodic=False) == {}, (seed, own)
+        for radius in (60.0, 100.0, 1000.0):
+            ball = np.sqrt(np.maximum(radius**2 - (x - 32.0) ** 2 - (y - 48.0) ** 2, 0.0))
+            assert leave_out_outliers(ball + own * height / height.std(), None, "nm", periodic=False) == {}
 
 
 def test_coordinates_among_the_heights_are_refused(tmp_path: Path) -> None:

@@ -1,6 +1,7 @@
 """Maps as text: headers, columns of coordinates, sides by name, decimal commas, words, encodings, instruments' .dat."""
 
 import struct
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -35,7 +36,6 @@ def check(surface: HeightMap, rows_along: str = "x") -> None:
 def test_a_header_is_read_in_any_text_file(
     tmp_path: Path, suffix: str, unit: str, factor: float, encoding: str
 ) -> None:
-    pytest.importorskip("SurfaceTopography")
     path = tmp_path / f"map{suffix}"
     path.write_text(GWYDDION.format(unit=unit) + rows(factor * HEIGHT), encoding=encoding)
     check(read_map(path))
@@ -44,19 +44,96 @@ def test_a_header_is_read_in_any_text_file(
     check(read_map(path))
 
 
+HEADERS = {
+    "German Gwyddion": ("# Kanal: Höhe\n# Breite: 12,00 µm\n# Höhe: 5,00 µm\n# Werteinheiten: nm\n", 1.0),
+    "older German Gwyddion": ("# Kanal: Höhe\n# Breite: 12,00 µm\n# Höhe: 5,00 µm\n# Einheiten: nm\n", 1.0),
+    "Japanese Gwyddion": ("# チャネル： 高さ\n# 幅： 12.00 µm\n# 高さ： 5.00 µm\n# 値の単位： nm\n", 1.0),
+    "SPIP": (
+        "# File Format = ASCII\n# x-pixels = 24\n# y-pixels = 10\n# x-length = 12000\n# y-length = 5000\n"
+        "# z-unit = nm\n",
+        1.0,
+    ),
+    "SPIP in bits": ("# x-pixels = 24\n# y-pixels = 10\n# x-length = 12000\n# y-length = 5000\n# Bit2nm = 0.5\n", 2.0),
+    "Nova": ("NX = 24\nNY = 10\nScale X = 0.5\nScale Y = 0.5\nUnit X = um\nUnit Data = nm\n", 1.0),
+    "pixels": ("# pixel size = 0.5 um\n# height conversion factor (-> m) = 1e-9\n", 1.0),
+    "plain": ("Width: 12 um\nHeight: 5 um\nValue units: um\n", 1e-3),
+    "numbers of points": ("Width: 24\nHeight: 10\ncellsize 0.5 um\nUnit: nm\n", 1.0),
+    "Keyence": (
+        '"Measured date and time","3/2/2024 10:11:12"\n"Model","VK-X200 Series"\n"Data type","ImageDataCsv"\n"",""\n'
+        '"Output image data","Height"\n"XY calibration","500","nm/pixel"\n"Horizontal","24"\n"Vertical","10"\n'
+        '"Minimum value","1"\n"Unit","µm"\n"Reference data name",""\n""\n"Height"\n',
+        1e-3,
+    ),
+}
+
+
+@pytest.mark.parametrize("name", HEADERS)
+@pytest.mark.parametrize("encoding", ["utf-8", "latin-1"])
+def test_headers_of_others_are_read(tmp_path: Path, name: str, encoding: str) -> None:
+    header, factor = HEADERS[name]
+    delimiter = '","' if name == "Keyence" else "\t"
+    lines = rows(factor * HEIGHT, delimiter)
+    if name == "Keyence":
+        lines = "".join(f'"{line}"\n' for line in lines.splitlines())
+    (tmp_path / "map.csv").write_text(header + lines, encoding="utf-8" if "Japanese" in name else encoding)
+    check(read_map(tmp_path / "map.csv"))
+
+
+ESRI = "ncols 24\nnrows 10\nxllcorner 3.5\nyllcorner 7\ncellsize 0.5\nNODATA_value -9999\n"
+
+
+@pytest.mark.parametrize("broken", [0, 7, 12])
+def test_a_grid_may_leave_points_out_and_break_its_rows(tmp_path: Path, broken: int) -> None:
+    """The header says how long a row is; numbers after each other, some to a line, are the same map."""
+    path, heights = tmp_path / "map.asc", HEIGHT.copy()
+    heights[3, 4] = -9999.0
+    words = rows(1e-3 * np.where(heights == -9999.0, -9999e3, heights), " ").split()
+    width = broken or NX
+    path.write_text(ESRI + "\n".join(" ".join(words[k : k + width]) for k in range(0, len(words), width)) + "\n")
+    for keys in ({"unit": "um"}, {"unit": "um", "size": (12e-6, 5e-6)}):
+        surface = read_map(path, **keys)
+        assert np.argwhere(np.isnan(surface.height)).tolist() == [[3, 4]]
+        check(surface._replace(height=np.where(np.isnan(surface.height), 1e-9 * HEIGHT, surface.height)))
+    with pytest.raises(
+        rm.RoughmdrError, match=r"24 along x and 10 along y, 0.5 and 0.5 apart, have no unit; give unit"
+    ):
+        read_map(path)
+
+
 @pytest.mark.parametrize(
-    ("header", "factor"),
+    ("change", "says"),
     [
-        ("# Kanal: Höhe\n# Breite: 12,00 µm\n# Höhe: 5,00 µm\n# Einheiten: nm\n", 1.0),
-        ("# File Format = ASCII\n# x-pixels = 24\n# y-pixels = 10\n# x-length = 12000\n# y-length = 5000\n"
-         "# z-unit = nm\n", 1.0),
-        ("Width: 12 um\nHeight: 5 um\nValue units: um\n", 1e-3),
+        (lambda lines: [*lines[:8], lines[8].rpartition(" ")[0], *lines[9:]],
+         "line 9 has 23 numbers, but line 1 says 24 a row; all 10 lines have 239"),
+        (lambda lines: [lines[0], *lines[2:6], *[line.rpartition(" ")[0] for line in (3 * lines[6:])[:24]]],
+         "line 6 has 23 numbers, but line 1 says 24 a row; all 24 lines have 552"),
+        (lambda lines: lines[:-1], "has 9 rows, but line 2 says 10"),
+        (lambda lines: ["ncols 10", "nrows 24", *lines[2:]], "line 7 has 24 numbers, but line 1 says 10 a row"),
+        (lambda lines: ["ncols 10.5", *lines[1:]], "line 1: '10.5' is no number of points"),
+        (lambda lines: [*lines[:8], lines[8] + "x", *lines[9:]], "line 9, column 24: '.*x' is no number"),
     ],
 )  # fmt: skip
-def test_headers_of_others_are_read(tmp_path: Path, header: str, factor: float) -> None:
-    pytest.importorskip("SurfaceTopography")
-    (tmp_path / "map.txt").write_text(header + rows(factor * HEIGHT))
-    check(read_map(tmp_path / "map.txt"))
+def test_a_header_that_does_not_fit_its_rows_is_named(
+    tmp_path: Path, change: Callable[[list[str]], list[str]], says: str
+) -> None:
+    (tmp_path / "map.txt").write_text("\n".join(change((ESRI + rows(HEIGHT, " ")).splitlines())))
+    with pytest.raises(rm.RoughmdrError, match=says):
+        read_map(tmp_path / "map.txt", unit="nm")
+
+
+def test_channels_of_one_file_are_told_apart(tmp_path: Path) -> None:
+    """Each has a header of its own; the first of heights is read unless another is named."""
+    phase = GWYDDION.format(unit="deg").replace("Channel: Height", "Channel: Phase") + rows(HEIGHT[:, ::-1])
+    second = GWYDDION.format(unit="um").replace("Channel: Height", "Channel: Back") + rows(2e-3 * HEIGHT)
+    path = tmp_path / "map.txt"
+    path.write_text(phase + GWYDDION.format(unit="nm") + rows(HEIGHT) + second)
+    check(read_map(path))
+    back = read_map(path, channel="Back")
+    check(back._replace(height=0.5 * back.height))
+    with pytest.raises(rm.RoughmdrError, match="unknown unit 'deg'"):
+        read_map(path, channel="Phase")
+    with pytest.raises(rm.RoughmdrError, match=r"no channel 'Top', but \['Phase', 'Height', 'Back'\]"):
+        read_map(path, channel="Top")
 
 
 @pytest.mark.parametrize(
@@ -69,12 +146,11 @@ def test_headers_of_others_are_read(tmp_path: Path, header: str, factor: float) 
     ],
 )
 def test_a_header_is_not_contradicted(tmp_path: Path, keys: dict[str, object], says: str) -> None:
-    pytest.importorskip("SurfaceTopography")
     (tmp_path / "map.txt").write_text(GWYDDION.format(unit="nm") + rows(HEIGHT))
     with pytest.raises(rm.errors.RoughmdrError, match=says):
         read_map(tmp_path / "map.txt", **keys)
     (tmp_path / "map.txt").write_text(GWYDDION.format(unit="deg") + rows(HEIGHT))
-    with pytest.raises(rm.errors.RoughmdrError, match="holds no heights that SurfaceTopography can read"):
+    with pytest.raises(rm.errors.RoughmdrError, match="units of the heights: unknown unit 'deg'"):
         read_map(tmp_path / "map.txt")
 
 
@@ -207,7 +283,6 @@ def test_files_of_instruments_are_known_by_their_content(tmp_path: Path, suffix:
 @pytest.mark.skipif(not SHARED.exists(), reason="the cases are not here")
 @pytest.mark.parametrize("name", ["text_header/gwy_m.txt", "text_header/gwy_nm.txt", "xyz_columns/xyz.txt"])
 def test_other_files_of_one_map_hold_it(name: str) -> None:
-    pytest.importorskip("SurfaceTopography")
     found, true = read_map(SHARED / name, unit="um" if "xyz" in name else None), read_map(SHARED / "true_map.nc")
     np.testing.assert_allclose(found.height, true.height, atol=1e-12)
     assert (found.dx, found.dy) == pytest.approx((true.dx, true.dy), rel=1e-4)

@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+from oracles.dugdale_punch import Punch
 from oracles.jkr_power_law import JkrPowerLaw
 from oracles.multiprecision import Number, mp
 from test_accuracy import SHAPES, draw
@@ -76,3 +77,25 @@ def test_it_grows_by_the_work_of_the_force(shape: rm.Paraboloid, work: float) ->
     states = apply(contact.law.state, contact.reduced(ends, contact.depth), contact.params)
     gained = energy(contact, states[1]) - energy(contact, states[0])
     assert gained == pytest.approx(float(np.sum(weights * force)) * (ends[1] - ends[0]) / 2.0, rel=1e-12)
+
+
+@pytest.mark.parametrize("unit", [1e-9, 1e-6, 1.0])
+@pytest.mark.parametrize("strength", [5e4, 4e5, 8e6])
+def test_that_of_a_flat_punch_with_a_range_of_adhesion(strength: float, unit: float) -> None:
+    """In contact, with an open edge, and lifted, up to where it lets go; and what is lost there."""
+    b, work = 2.7 * unit, 0.05 * unit
+    contact = Contact.of(rm.FlatPunch(b), E, Adhesion(work, "dugdale", strength))
+    exact = Punch(b, E, work, strength)
+    depth = contact.depth[0]
+    far, scale = 0.0, abs(float(exact.energy(exact.state(mp.mpf(-depth)))))
+    for share in (-1.0, -0.999, -0.7, -0.3, -0.01, 0.0, 0.4, 2.0):
+        delta = mp.mpf(share * depth)
+        wanted = float(exact.energy(exact.state(delta)))
+        far = max(far, abs(wanted))
+        state = apply(contact.law.state, np.array([share + 1.0]), contact.params)[0]
+        assert abs(energy(contact, state) - wanted) <= 1e-13 * max(far, scale, math.pi * work * b * b), share
+    lost = apply(contact.law.jump_energy, np.array([1.0]), 0.0, contact.params)[0] * contact.force * depth
+    gained = apply(contact.law.jump_energy, np.array([0.0]), 1.0, contact.params)[0] * contact.force * depth
+    let_go = float(exact.energy(exact.state(mp.mpf(-depth))))
+    caught = -float(exact.energy(exact.state(mp.mpf(-work / strength))))
+    assert (lost, gained) == pytest.approx((let_go, caught), rel=1e-11, abs=1e-13 * math.pi * work * b * b)

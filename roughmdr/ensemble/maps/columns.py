@@ -22,8 +22,6 @@ _TITLE = re.compile(
     re.IGNORECASE,
 )
 """Title of a column with its unit: "x [um]", "x (um)", "x/um" or "x_um"."""
-_UNITS = re.compile(r"(lateral|xy|value|z)[ -]units?\s*[:=]\s*(\S+)", re.IGNORECASE)
-"""Unit of all coordinates, or of the heights, in a comment."""
 
 
 def is_of_points(table: TextTable) -> bool:
@@ -67,7 +65,7 @@ def map_of_points(table: TextTable) -> RawMap:
         height[of_x[0], of_y[0]] = points[:, z]
         if not lateral:
             return RawMap(height, unit, steps=(of_x[1], of_y[1]))
-        return RawMap(height, unit, (_metres(lateral) * of_x[1], _metres(lateral) * of_y[1]))
+        return RawMap(height, unit, (metres(lateral) * of_x[1], metres(lateral) * of_y[1]))
     if lines:
         raise RoughmdrError(f"columns x, y, z: lines {lines} give a height to one point")
     kinds = " and ".join(f"{np.unique(points[:, k]).size} different {name}" for k, name in enumerate("xy"))
@@ -96,13 +94,7 @@ def _grid(values: Floats) -> tuple[np.ndarray, float] | None:
 
 def _titles(table: TextTable) -> tuple[tuple[str | None, str | None], tuple[int, int, int] | None]:
     """Return the units of coordinates and heights, and the columns of x, y and z, as far as comments say them."""
-    lateral = height = None
-    for _, comment in table.comments:
-        for name, unit in _UNITS.findall(comment):
-            if name.lower() in ("lateral", "xy"):
-                lateral = unit
-            else:
-                height = unit
+    lateral, height = (table.header[name].text if name in table.header else None for name in ("lateral", "unit"))
     for _, comment in table.comments[::-1]:
         words = re.split(r"[;,\t]|\s+(?=[xyzXYZ]\b)", comment.strip())
         found = [match for match in map(_TITLE.fullmatch, filter(None, words)) if match]
@@ -115,7 +107,8 @@ def _titles(table: TextTable) -> tuple[tuple[str | None, str | None], tuple[int,
     return (lateral, height), None
 
 
-def _metres(unit: str) -> float:
+def metres(unit: str) -> float:
+    """Return a unit of coordinates [m]; RoughmdrError where it is no length."""
     try:
         return float(unit_factor(unit, "m"))
     except RoughmdrError as error:

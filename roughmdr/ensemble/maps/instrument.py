@@ -1,6 +1,5 @@
-"""Read height maps in the formats of instruments, and headers of text files, by SurfaceTopography."""
+"""Read height maps in the formats of instruments, by SurfaceTopography."""
 
-import io
 import warnings
 from pathlib import Path
 from typing import Any
@@ -17,15 +16,7 @@ def read_instrument(path: Path, channel: str | None) -> RawMap:
 
     NaN is undefined. RoughmdrError where SurfaceTopography is missing, or reads no such map.
     """
-    return _open(str(path), None, channel, path.suffix or "a format without a suffix")
-
-
-def read_with_header(text: str, channel: str | None) -> RawMap:
-    """Read numbers between blanks, of which a header says size, unit or channel; rows are along x."""
-    return _open(io.BytesIO(text.encode()), "asc", channel, "the header of a text file")
-
-
-def _open(source: Any, known_format: str | None, channel: str | None, kind: str) -> RawMap:
+    kind = path.suffix or "a format without a suffix"
     with warnings.catch_warnings(action="ignore"):  # about other contents, or packages not installed
         try:
             from SurfaceTopography.IO import open_topography
@@ -36,7 +27,7 @@ def _open(source: Any, known_format: str | None, channel: str | None, kind: str)
                 ".csv, .tsv, .dat and .xyz"
             ) from None
         try:
-            with open_topography(source, known_format) as reader:
+            with open_topography(str(path)) as reader:
                 return _read_channel(reader, channel)
         except RoughmdrError:
             raise

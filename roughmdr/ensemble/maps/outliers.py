@@ -4,6 +4,7 @@ Thresholds were chosen on an optical and an atomic-force map, Gaussian maps of H
 points a wave, white noise, pillars, and 300 maps of steep grains, whose sharpest stands out by 4.2 (``_SPIKE``).
 """
 
+import itertools
 from collections.abc import Iterable, Iterator
 from typing import Literal, NamedTuple
 
@@ -11,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roughmdr.ensemble.maps.height_map import blocks
+from roughmdr.ensemble.maps.plateau import find_plateau
 from roughmdr.errors import RoughmdrError
 from roughmdr.numerics.arguments import Floats
 
@@ -23,7 +25,7 @@ _FEWEST, _TIMES = 10, 5.0
 _JUMP = 2.5
 """Median step from such points to their neighbours, over the median step of the map, beyond which they are a mark; at a
 clipped top it is about 1."""
-_LEAST_KNOWN = 5  # neighbours of a point that may be a spike: those at an edge, not at a corner
+_LEAST_KNOWN = 0.6  # share of the neighbours of a spike that are not undefined: at an edge, not at a corner
 _LARGE = 1.5  # the step that 95 % are smaller than, over that of 80 %, where they are Gaussian
 _NEAR = 10  # distinct heights next to a value that its number of points is compared with
 _MOST_MARKS = 8  # different marks in one map
@@ -32,7 +34,10 @@ _FEWEST_STEPS = 7  # between numbers of a row that may be coordinates
 _EVEN, _UNEVEN, _LESS_EVEN = 0.3, 0.5, 4.0
 """Relative range of the steps of coordinates at most, with their rounding; of heights in the next row at least, and
 over that of the coordinates."""
-_NEIGHBOURS = [(i, j) for i in (-1, 0, 1) for j in (-1, 0, 1) if (i, j) != (0, 0)]
+_CLIPPED = (
+    'the tops that touch first are not known; measure with a larger range, or give outliers = "kept" if they are as '
+    "flat as that"
+)
 _REMEDY = 'outliers = "undefined" leaves them out, outliers = "kept" takes them as they are'
 
 
@@ -69,6 +74,8 @@ def leave_out_outliers(
             for each in spikes:  # so that those beside them are found
                 height.flat[each.points] = np.nan
         clipped = list(_clipped(height, unit))
+        if not any(each.matters for each in clipped):
+            clipped += _levelled(height, unit)
     refused = [each.text for each in clipped if each.matters]
     if treatment is None and any(each.matters for each in found):
         refused = [f"{'; '.join(each.text for each in found)}: {_REMEDY}", *refused]
@@ -144,17 +151,31 @@ def _clipped(height: Floats, unit: str) -> Iterator[_Finding]:
     for value, end in zip(_ends(height, ()), ("lowest", "highest"), strict=True):
         points = np.flatnonzero(height == value)
         if _is_frequent(value, points.size, levels, counts, height.size) and _is_flat(height, points, value):
-            remedy = (
-                "the tops that touch first are not known; measure with a larger range, or give "
-                'outliers = "kept" if they are as flat as that'
-            )
             text = f"its {end} part is clipped: {_at(height, points)} exactly {value:g} {unit}, with their neighbours"
-            yield _Finding(f"{text}; {remedy}" if end == "highest" else text, points, matters=end == "highest")
+            yield _Finding(f"{text}; {_CLIPPED}" if end == "highest" else text, points, matters=end == "highest")
+
+
+def _levelled(height: Floats, unit: str) -> Iterator[_Finding]:
+    """Yield the highest points of a map where they are a smooth plane: clipped, and levelled or noisy after that."""
+    plateau = find_plateau(height)
+    if plateau is None:
+        return
+    values = height.flat[plateau.points]
+    plane = f"{_at(height, plateau.points)} from {values.min():.4g} to {values.max():.4g} {unit} on one smooth plane"
+    if plateau.is_exact:
+        text = f"its highest part is clipped, and was levelled after that: {plane}, with none above; {_CLIPPED}"
+    else:
+        text = (
+            f"its tops are flat: {plane} but for noise of {plateau.thickness:.2g} {unit}, with none above. Either the "
+            "instrument was at the end of its range, and the tops that touch first are not known, or they were worn or "
+            'made so; measure with a larger range, or say outliers = "kept"'
+        )
+    yield _Finding(text, plateau.points, matters=plateau.is_exact)
 
 
 def _spikes(height: Floats, unit: str, *, periodic: bool) -> Iterator[_Finding]:
-    """Yield the single points that stand out above or below their neighbours, all but one, by more than the range of
-    these and more than other steps of the map.
+    """Yield the points, single or in squares of four, that stand out above or below their neighbours, all but one, by
+    more than the range of these and more than other steps of the map.
     """
     least = _SPIKE * _steps(height, ()).large
     if not least > 0.0:
@@ -162,25 +183,31 @@ def _spikes(height: Floats, unit: str, *, periodic: bool) -> Iterator[_Finding]:
     nx, ny = height.shape
     points: NDArray[np.intp]
     up, down = list[int](), list[int]()
-    for rows in blocks(nx, ny):
-        numbers = np.arange(rows.start - 1, rows.stop + 1)
-        part = np.pad(height[numbers % nx], ((0, 0), (1, 1)), mode="wrap")
+    for side, rows in itertools.product((1, 2), blocks(nx, ny)):
+        numbers = np.arange(rows.start - 1, rows.stop + side)
+        part = np.pad(height[numbers % nx], ((0, 0), (1, side)), mode="wrap")
         if not periodic:
-            part[:, [0, -1]] = np.nan
+            part[:, 0] = part[:, ny + 1 :] = np.nan
             part[(numbers < 0) | (numbers >= nx)] = np.nan
-        inner = part[1:-1, 1:-1]
-        around = [part[1 + i : part.shape[0] - 1 + i, 1 + j : part.shape[1] - 1 + j] for i, j in _NEIGHBOURS]
-        known = sum((np.isfinite(each).view(np.int8) for each in around), np.zeros(inner.shape, np.int8))
+        seen = {
+            (i, j): part[1 + i : 1 + i + rows.stop - rows.start, 1 + j : 1 + j + ny]
+            for i in range(-1, side + 1)
+            for j in range(-1, side + 1)
+        }
+        inside = [(i, j) for i in range(side) for j in range(side)]
+        around = [each for at, each in seen.items() if at not in inside]
+        known = sum((np.isfinite(each).view(np.int8) for each in around), np.zeros(around[0].shape, np.int8))
         for sign, found in ((1.0, up), (-1.0, down)):
-            below = sum(((sign * (inner - each) > least).view(np.int8) for each in around), np.zeros_like(known))
-            at = np.nonzero((below >= known - 1) & (known >= _LEAST_KNOWN))
+            inner = np.minimum.reduce([sign * seen[at] for at in inside])
+            below = sum(((inner - sign * each > least).view(np.int8) for each in around), np.zeros_like(known))
+            at = np.nonzero((below >= known - 1) & (known > _LEAST_KNOWN * len(around)))
             beside = np.sort(np.stack([sign * each[at] for each in around]), axis=0)  # undefined ones come last
             second = np.take_along_axis(beside, known[at][None].astype(np.intp) - 2, 0)[0]
-            spiky = sign * inner[at] - second > _SPIKE * (second - beside[1])
-            found.extend(((at[0][spiky] + rows.start) * ny + at[1][spiky]).tolist())
+            row, column = (each[inner[at] - second > _SPIKE * (second - beside[1])] for each in at)
+            found.extend(k for i, j in inside for k in ((row + rows.start + i) % nx * ny + (column + j) % ny).tolist())
     for spikes, where in ((up, "above"), (down, "below")):
         if spikes:
-            points = np.array(spikes, dtype=np.intp)
+            points = np.unique(np.array(spikes, dtype=np.intp))
             values = height.flat[points]
             span = f"{values.min():.4g}{f' to {values.max():.4g}' * (points.size > 1)} {unit}"
             text = f"{_at(height, points)} {span}, far {where} neighbouring heights"

@@ -6,6 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from roughmdr.ensemble.maps.text_header import Said, read_header
 from roughmdr.errors import RoughmdrError
 from roughmdr.numerics.arguments import Floats
 
@@ -28,7 +29,8 @@ class TextTable(NamedTuple):
 
     numbers: Floats  # NaN where a word says that there is none
     comments: list[Line]  # after #, or before the first row
-    lines: list[int]  # numbers of the lines that hold the rows
+    lines: list[int]  # numbers of the lines that the rows begin on
+    header: dict[str, Said]  # what comments say of the map
 
 
 def text_of(path: Path) -> str | None:
@@ -46,6 +48,7 @@ def read_table(text: str) -> TextTable:
 
     They are separated by semicolons, tabs, commas or blanks. A comma is a decimal mark where it does not separate. A
     delimiter at the end of all lines ends no column. Lines before the first row, and what follows #, are comments.
+    Where these say how many numbers a row has, rows may be broken over lines.
     """
     comments, titles, rows = list[Line](), list[Line](), list[Line]()
     for number, line in enumerate(text.splitlines(), 1):
@@ -61,8 +64,9 @@ def read_table(text: str) -> TextTable:
     if not rows:
         raise RoughmdrError("holds no numbers")
     delimiter = _delimiter(rows[0].text)
-    _refuse_mostly_numbers(titles, delimiter)
+    _refuse_mostly_numbers(titles, delimiter, len(rows[0].text.split(delimiter)))
     comments = sorted([*comments, *titles])
+    header = read_header(comments)
     numbers = [number for number, _ in rows]
     if delimiter == ",":
         _refuse_two_meanings(rows)
@@ -72,9 +76,31 @@ def read_table(text: str) -> TextTable:
         rows = [Line(number, row[:-1]) for number, row in rows]
     try:
         table = np.loadtxt([row for _, row in rows], delimiter=delimiter, comments=None, ndmin=2)
+        counts = [table.shape[1]] * len(table)
     except ValueError:
-        table = np.array(_by_words(rows, delimiter))
-    return TextTable(table, comments, numbers)
+        by_line = _by_words(rows, delimiter)
+        table, counts = np.concatenate(by_line), [len(line) for line in by_line]
+    table, lines = _in_rows(table.ravel(), counts, numbers, header)
+    return TextTable(table, comments, lines, header)
+
+
+def _in_rows(values: Floats, counts: list[int], lines: list[int], header: dict[str, Said]) -> tuple[Floats, list[int]]:
+    """Return the numbers of lines, so many on each, as rows of equal length, and the lines that these begin on."""
+    columns, rows = header.get("columns"), header.get("rows")
+    width = counts[0] if columns is None else columns.points
+    other = next((k for k, count in enumerate(counts) if count != width), None)
+    if other is None:
+        return values.reshape(-1, width), lines
+    if columns is None:
+        hint = "; coordinates in the first row and column are no heights" if other == 1 else ""
+        raise RoughmdrError(f"line {lines[other]} has {counts[other]} numbers, but line {lines[0]} has {width}{hint}")
+    is_whole = rows is not None and values.size % (width * rows.points) == 0
+    if not is_whole or len(counts) == width:  # else rows and columns may be taken for each other
+        raise RoughmdrError(
+            f"line {lines[other]} has {counts[other]} numbers, but line {columns.line} says {width} a row; all "
+            f"{len(counts)} lines have {values.size}"
+        )
+    return values.reshape(-1, width), np.repeat(lines, counts)[::width].tolist()
 
 
 def _delimiter(row: str) -> str | None:
@@ -92,12 +118,12 @@ def _holds_numbers(row: str) -> bool:
     return None not in values and any(np.isfinite(value) for value in values if value is not None)
 
 
-def _refuse_mostly_numbers(titles: list[Line], delimiter: str | None) -> None:
-    """RoughmdrError where a line before the first row is a row but for some words."""
+def _refuse_mostly_numbers(titles: list[Line], delimiter: str | None, columns: int) -> None:
+    """RoughmdrError where a line before the first row, with as many columns, is a row but for some words."""
     for number, title in titles:
         words = title.split(delimiter)
         wrong = [k for k, word in enumerate(words) if _value(word, delimiter) is None]
-        if len(words) > 2 * len(wrong) and len(words) > 2:
+        if len(words) > 2 * len(wrong) and len(words) == columns > 2:
             raise RoughmdrError(f"line {number}, column {wrong[0] + 1}: {words[wrong[0]].strip()!r} is no number")
 
 
@@ -132,19 +158,14 @@ def _with_point(number: int, row: str) -> str:
     return row.replace(",", ".")
 
 
-def _by_words(rows: list[Line], delimiter: str | None) -> list[list[float]]:
-    """Return the numbers of rows word by word."""
-    table = list[list[float]]()
+def _by_words(rows: list[Line], delimiter: str | None) -> list[Floats]:
+    """Return the numbers of lines word by word."""
+    table = list[Floats]()
     for number, row in rows:
         words = row.split(delimiter)
         values = [_value(word, delimiter) for word in words]
         if None in values:
             column = values.index(None)
             raise RoughmdrError(f"line {number}, column {column + 1}: {words[column].strip()!r} is no number")
-        table.append([value for value in values if value is not None])
-        if len(values) != len(table[0]):
-            hint = "; coordinates in the first row and column are no heights" if len(table) == 2 else ""
-            raise RoughmdrError(
-                f"line {number} has {len(values)} numbers, but line {rows[0].number} has {len(table[0])}{hint}"
-            )
+        table.append(np.array(values, dtype=np.float64))
     return table
