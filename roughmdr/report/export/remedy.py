@@ -1,4 +1,4 @@
-"""What to compute where a law is not known well enough between its steps.
+"""Advice on what to compute where a law is not known well enough between its steps.
 
 A smooth law bends between them, by less the more there are. Single contacts of a sampled law jump, which more steps do
 not make smaller: the expected law has no such jumps, and a mean over more realisations has smaller ones. With as many
