@@ -5,10 +5,11 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from roughmdr.errors import RoughmdrError
 from roughmdr.fitting.model import Model
 from roughmdr.fitting.parameters import Parameter
-from roughmdr.fitting.residuals import is_systematic, relative_rms
-from roughmdr.fitting.search import Found
+from roughmdr.fitting.residuals import is_above_noise, is_systematic, relative_rms
+from roughmdr.fitting.search import Found, search
 from roughmdr.fitting.uncertainty import Uncertainty, correlation_of
 from roughmdr.numerics.arguments import Floats
 from roughmdr.schema.units import format_quantity
@@ -17,6 +18,7 @@ _ALIKE, _SAME = 0.99, 0.9999  # correlations
 _SHARED = 0.05  # of a direction in which the law hardly moves
 _WIDE = math.log(2.0)  # of x: half a 95 % interval, a factor of two or so much of the scale
 _AT_BOUND = 1e-3
+_BETTER = 25.0  # decrease of the sum of squares over the variance of the noise: five standard deviations
 _FAR_OFF = 2.0  # root mean square of deviations over their stated errors
 
 
@@ -26,7 +28,7 @@ def doubts(model: Model, found: Found, known: Uncertainty) -> Iterator[str]:
     groups = _alike(known.slopes)
     for group in groups:
         yield _told_apart(group, parameters, known)
-    width = known.quantile * known.standard_error
+    width = known.reach.max(axis=0)
     for i, parameter in enumerate(parameters):
         if width[i] > _WIDE and not any(i in group for group in groups):
             yield f"the curve hardly determines {parameter.key}: its 95 % interval is very wide"
@@ -40,9 +42,28 @@ def doubts(model: Model, found: Found, known: Uncertainty) -> Iterator[str]:
             f"the residuals are systematic ({rms:.2g} % r.m.s.): the scene does not describe the curve, and the "
             "intervals mean little"
         )
+    yield from _backwards(model, found)
     size = float(np.sqrt(np.mean(np.square(found.deviations))))
     if model.curve.error is not None and size > _FAR_OFF:
         yield f"the residuals are {size:.2g} times the stated errors of the {model.curve.quantity}"
+
+
+def _backwards(model: Model, found: Found) -> Iterator[str]:
+    """Yield a doubt where an adhesive law, which depends on the sense of motion, fits the curve better from its end."""
+    if not (model.adheres and is_above_noise(model.curve, found.deviations)):
+        return
+    other = model.backwards()
+    try:
+        deviations = search(other).deviations
+    except RoughmdrError:
+        return
+    here, there = (float(np.mean(np.square(each))) for each in (found.deviations, deviations))
+    if (here - there) * deviations.size > _BETTER * (there if model.curve.error is None else 1.0):
+        sizes = [100.0 * relative_rms(model.curve, found.deviations), 100.0 * relative_rms(other.curve, deviations)]
+        yield (
+            f"read from its last row to its first the curve is fitted better, to {sizes[1]:.2g} % r.m.s. in place of "
+            f"{sizes[0]:.2g} %: rows must be in the order of measurement, for adhesion tells loading from unloading"
+        )
 
 
 def _alike(slopes: Floats) -> list[list[int]]:
@@ -61,7 +82,7 @@ def _alike(slopes: Floats) -> list[list[int]]:
 def _told_apart(group: list[int], parameters: list[Parameter], known: Uncertainty) -> str:
     names = [parameters[i].key for i in group]
     correlation = correlation_of(known.by_even_noise)[group[0], group[1]]
-    wide = (known.quantile * known.standard_error)[group].max() > _WIDE or abs(correlation) > _SAME
+    wide = known.reach[:, group].max() > _WIDE or abs(correlation) > _SAME
     text = f"the curve {'does not tell' if wide else 'hardly tells'} {', '.join(names[:-1])} and {names[-1]} apart"
     if len(group) > 2:
         return text

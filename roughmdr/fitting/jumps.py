@@ -27,7 +27,7 @@ _FARTHEST = 2  # steps to the neighbours of an interval
 def with_measured_jumps(model: Model, x: Floats) -> Floats:
     """Return the x nearest to one whose law jumps where the measured load changes most, or x where there is none."""
     point = model.point(x)
-    moved = _moved(model, point, _measured(model, point.jumps), model.jumps_at(x))
+    moved = nearest_in(model, point, _measured(model, point.jumps), model.jumps_at(x))
     return x if moved is None else moved.x
 
 
@@ -43,7 +43,7 @@ def least_squares_between(model: Model, x: Floats) -> Floats:
         better, left = best, np.linalg.svd(model.slopes(best.x), full_matrices=False)[0]
         places = model.jumps_at(best.x)
         for interval in _neighbours(best.jumps):
-            point = None if interval in tried else _moved(model, best, interval, places)
+            point = None if interval in tried else nearest_in(model, best, interval, places)
             if point is not None and _cost(point) - np.sum(np.square(left.T @ point.deviations)) < _cost(better):
                 better = min(better, _least(model, point), key=_cost)
             tried.add(interval)
@@ -73,7 +73,7 @@ def _neighbours(interval: Interval) -> Iterator[Interval]:
         yield tuple((np.array(interval) + change).tolist())
 
 
-def _moved(model: Model, point: Point, interval: Interval, jumps: Jumps | None) -> Point | None:
+def nearest_in(model: Model, point: Point, interval: Interval, jumps: Jumps | None) -> Point | None:
     """Return the point of an interval that is nearest by Newton's method; None where it finds none."""
     (low, high), widths = model.bounds, np.diff(model.curve.values)
     if not all(0 <= step < widths.size and widths[step] for step in interval):
@@ -81,9 +81,9 @@ def _moved(model: Model, point: Point, interval: Interval, jumps: Jumps | None) 
     for _ in range(_NEWTON):
         if jumps is None or jumps.control.size != len(interval):
             return None
-        places, slopes = _places(model, interval, jumps)
+        places, slopes = places_of(model, interval, jumps)
         sides, ends = np.concatenate([slopes, -slopes]), np.concatenate([1.0 - places, places]) - 2.0 * _INSIDE
-        step = _projected(np.zeros(point.x.size), sides, ends)
+        step = projected(np.zeros(point.x.size), sides, ends)
         if not (sides @ step < ends + _INSIDE).all():
             return None
         point = model.point(np.clip(point.x + step, low, high))
@@ -93,7 +93,7 @@ def _moved(model: Model, point: Point, interval: Interval, jumps: Jumps | None) 
     return None
 
 
-def _places(model: Model, interval: Interval, jumps: Jumps) -> tuple[Floats, Floats]:
+def places_of(model: Model, interval: Interval, jumps: Jumps) -> tuple[Floats, Floats]:
     """Return where jumps lie, 0 to 1 in an interval, and the derivatives [jump, parameter]."""
     begin, width = model.curve.values[list(interval)], np.diff(model.curve.values)[list(interval)]
     return (jumps.control - begin) / width, jumps.slopes / width[:, None]
@@ -120,9 +120,9 @@ def _improved(model: Model, point: Point) -> Point | None:
     for edged in (False, True):
         jumps = model.jumps_at(point.x) if edged else None
         if jumps is not None:
-            places, slopes = _places(model, point.jumps, jumps)
+            places, slopes = places_of(model, point.jumps, jumps)
             sides, ends = [*sides, slopes, -slopes], [*ends, 1.0 - _INSIDE - places, places - _INSIDE]
-        u = _projected(goal, np.concatenate(sides) @ axes, np.maximum(np.concatenate(ends), 0.0))
+        u = projected(goal, np.concatenate(sides) @ axes, np.maximum(np.concatenate(ends), 0.0))
         if _cost(point) * _LESS > goal @ goal - (goal - u) @ (goal - u):
             return None
         ahead = axes @ u
@@ -130,14 +130,14 @@ def _improved(model: Model, point: Point) -> Point | None:
         for _ in range(_HALVINGS if edged else 1):
             trial = model.point(point.x + ahead)
             if edged and trial.jumps != point.jumps:
-                trial = _moved(model, trial, point.jumps, model.jumps_at(trial.x)) or point
+                trial = nearest_in(model, trial, point.jumps, model.jumps_at(trial.x)) or point
             if trial.jumps == point.jumps and _cost(trial) < _cost(point):
                 return trial
             ahead = 0.5 * ahead
     return None
 
 
-def _projected(goal: Floats, sides: Floats, ends: Floats) -> Floats:
+def projected(goal: Floats, sides: Floats, ends: Floats) -> Floats:
     """Return the point nearest to ``goal`` with side . u <= end for each edge.
 
     C. L. Lawson, R. J. Hanson, Solving Least Squares Problems (1974), chapter 23: least distance programming.

@@ -46,6 +46,11 @@ class MeasuredCurve(NamedTuple):
         """By which deviations are divided: the error of each load, or the largest load."""
         return np.full_like(self.load, np.abs(self.load).max()) if self.error is None else self.error
 
+    def backwards(self) -> "MeasuredCurve":
+        """Return the curve row by row from its end."""
+        error = None if self.error is None else self.error[::-1]
+        return self._replace(values=self.values[::-1], load=self.load[::-1], error=error)
+
 
 def read_measured(measured: "str | Path | pd.DataFrame | xr.Dataset", parameters: int) -> MeasuredCurve:
     """Return a measured curve that ``parameters`` numbers are fitted to; StoreError where it is wrong.

@@ -62,18 +62,24 @@ class Model:
             raise SceneError(
                 f"{curve.origin}: pressure needs a nominal area in the scene: asperities.patch, and no [nominal]"
             )
+        self._start, self._free = scene, free
         self._table = parse_toml(scene.toml)
         self.curve = curve
         self.parameters: list[Parameter] = free_parameters(free, scene, self._table, curve)
         self.bounds: tuple[Floats, Floats] = tuple(np.transpose([each.bounds for each in self.parameters]))
         source, layers = scene.asperities, (scene.interaction, scene.viscoelastic, scene.nominal)
         self._is_plain = source.node_count(2) == source.node_count(1) and all(layer is None for layer in layers)
-        self.jumps = source.equal_heights and scene.work > 0.0
+        self.adheres = scene.work > 0.0
+        self.jumps = source.equal_heights and self.adheres
         self._path = LoadingPath.along(curve.values, unload=False, adhesive=scene.work > 0.0)
         self.exact = True
         self.evaluations = 0
         self._last = _NONE
         self.last_error: RoughmdrError = OutOfRange("the expected law is not finite")
+
+    def backwards(self) -> "Model":
+        """Return the model of the curve as if it had been measured from its end."""
+        return Model(self._start, self.curve.backwards(), self._free)
 
     def scene(self, x: Floats) -> Scene:
         """Return the scene with these parameters; SceneError where it does not allow them."""

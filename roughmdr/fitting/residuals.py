@@ -6,6 +6,8 @@ from roughmdr.fitting.measured import MeasuredCurve
 from roughmdr.numerics.arguments import Floats
 
 _LIMIT = 3.3  # standard deviations, which chance exceeds once in a thousand curves
+_OF_DIFFERENCES = 0.6745 * 20.0**0.5  # median of third differences of noise, over its standard deviation
+_ABOVE = 1.1  # deviation over that of the noise
 
 
 def relative_rms(curve: MeasuredCurve, deviations: Floats) -> float:
@@ -22,3 +24,9 @@ def is_systematic(deviations: Floats) -> bool:
     products = deviations[1:] * deviations[:-1]
     size = float(np.sqrt(np.sum(np.square(products))))
     return bool(products.sum() > _LIMIT * size)
+
+
+def is_above_noise(curve: MeasuredCurve, deviations: Floats) -> bool:
+    """Return whether deviations are larger than the scatter of neighbours, by third differences of the load."""
+    noise = float(np.median(np.abs(np.diff(curve.load, 3)))) / _OF_DIFFERENCES
+    return bool(relative_rms(curve, deviations) * np.abs(curve.load).max() > _ABOVE * noise)

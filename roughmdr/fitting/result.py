@@ -85,17 +85,12 @@ def assemble(model: Model, found: Found, known: Uncertainty, seconds: float, com
 def _of_parameter(parameter: Parameter, i: int, found: Found, known: Uncertainty) -> dict[str, Array]:
     """Return a parameter with its standard error and the ends of its interval, which stay where it was sought."""
     x, error = float(found.x[i]), float(known.standard_error[i])
-    half, per_x, key, unit = (
-        float(known.quantile[i]) * error,
-        parameter.per_x(x),
-        parameter.key,
-        _spelled(parameter.unit),
-    )
+    (lower, upper), per_x, key, unit = known.reach[:, i], parameter.per_x(x), parameter.key, _spelled(parameter.unit)
     numbers = {
         "": (parameter.value(x), f"fitted {key}"),
         "_standard_error": (per_x * error, f"standard error of the fitted {key}"),
-        "_low": (parameter.value(x - half), f"lower end of the 95 % interval of {key}"),
-        "_high": (parameter.value(x + half), f"upper end of the 95 % interval of {key}"),
+        "_low": (parameter.value(x - float(lower)), f"lower end of the 95 % interval of {key}"),
+        "_high": (parameter.value(x + float(upper)), f"upper end of the 95 % interval of {key}"),
     }
     if known.shift is not None:
         about = f"how far the model error of the law may shift the fitted {key}, not in its interval"

@@ -5,11 +5,13 @@ from typing import NamedTuple
 import numpy as np
 
 from roughmdr.errors import OutOfRange
+from roughmdr.fitting.edges import Edges, certain_edges, farthest
 from roughmdr.fitting.model import Model
 from roughmdr.fitting.search import Found
 from roughmdr.numerics.arguments import Floats
 
 _LEVEL = 0.95
+_TOGETHER = 0.99  # probability of the parameters, all together, of which the edges between jumps allow some
 _LEAST_SLOPE = 1e-6  # least slope over the largest: what changes the law by less is not known at all
 _LEAST_FREEDOM = 1e-6  # of a step: one that fits whatever it measures says nothing of the noise
 _UNKNOWN = 10.0  # standard error of x along a combination that is not known at all, however small the noise
@@ -24,8 +26,8 @@ class Uncertainty(NamedTuple):
     """Likewise of noise that is even; it says what the curve tells apart, however small its noise."""
     slopes: Floats
     """By how much each parameter moves the law, [step, parameter]."""
-    quantile: Floats
-    """Standard errors of each parameter from the middle to the end of its 95 % interval."""
+    reach: Floats
+    """From each parameter to the lower and the upper end of its 95 % interval: [2, parameter]."""
     shift: Floats | None
     """By how much the error of the law may move each parameter; None where that error is not known."""
 
@@ -63,7 +65,7 @@ def uncertainty(model: Model, found: Found) -> Uncertainty:
 
     With a standard deviation of each load, it is that which they cause, normal. Without, it is the sandwich HC3 of the
     residuals, for noise that is constant, proportional or otherwise uneven, with Student's t of as many degrees of
-    freedom as the points have that decide.
+    freedom as the points have that decide. Intervals end where a jump would miss a measured load: see ``edges``.
     """
     from scipy.stats import norm, t
 
@@ -88,7 +90,29 @@ def uncertainty(model: Model, found: Found) -> Uncertainty:
     unknown = right[sizes < _LEAST_SLOPE * sizes[0]] / lengths
     unknown *= _UNKNOWN / np.abs(unknown).max(axis=1, keepdims=True)
     influence = np.hstack([influence, unknown.T])
-    return Uncertainty(influence, inverse, slopes, np.asarray(quantile), _shift(model, found, inverse))
+    reach = _reach(influence, np.asarray(quantile), certain_edges(model, found))
+    return Uncertainty(influence, inverse, slopes, reach, _shift(model, found, inverse))
+
+
+def _reach(influence: Floats, quantile: Floats, edges: Edges) -> Floats:
+    """Return how far intervals go to both sides: a quantile of standard errors, and no farther than edges allow.
+
+    How far these allow it is sought among all parameters that are, together, not beyond what has a probability of
+    ``_TOGETHER``.
+    """
+    from scipy.stats import chi2, norm
+
+    left, sizes, _ = np.linalg.svd(influence, full_matrices=False)
+    axes = left * sizes
+    reach = np.tile(quantile * np.linalg.norm(axes, axis=1), (2, 1))
+    if edges.ends.size:
+        wider = float(np.sqrt(chi2.ppf(_TOGETHER, quantile.size))) / norm.ppf(0.5 * (1.0 + _LEVEL))
+        allowed = Edges(edges.sides @ axes, edges.ends)
+        for (side, i), width in np.ndenumerate(reach):
+            radius = max(wider, 1.0) * float(quantile[i])
+            most = farthest((-1.0, 1.0)[side] * axes[i], radius, allowed)
+            reach[side, i] = min(width, most)
+    return reach
 
 
 def _check_enough(model: Model, slopes: Floats) -> None:

@@ -102,7 +102,7 @@ def test_every_start_leads_to_one_minimum(depth: float) -> None:
     assert float(np.sum(np.square(fits[0].force_fitted.to_numpy() - measured.force))) < np.sum(
         (measured.force - force) ** 2
     )
-    for key, error in ((MODULUS, 0.0), (WORK, 0.0), (OFFSET, 1e-3 * number(fits[0], OFFSET, "_standard_error"))):
+    for key, error in ((MODULUS, 0.0), (WORK, 0.0), (OFFSET, 2e-4 * number(fits[0], OFFSET, "_standard_error"))):
         found = [number(fit, key) for fit in fits]
         assert found == pytest.approx([found[0]] * len(fits), rel=1e-5, abs=error)
 
@@ -120,6 +120,19 @@ def test_the_offset_alone_is_the_best_of_all(seed: int) -> None:
 
     scanned = [cost(jkr(2e3, 1e-5, 1e-3, -(steps + offset))) for offset in np.linspace(-1e-7, 3e-7, 2001)]
     assert cost(fit.force_fitted.to_numpy()) < min(scanned) * (1.0 + 1e-9)
+
+
+@pytest.mark.parametrize("free", COMBINATIONS["jkr"], ids="-".join)
+def test_rows_from_last_to_first_are_doubted(free: list[str]) -> None:
+    """Unloading that is saved as if it were loading, whose contact is made where it should be lost."""
+    tip, up = Tip("jkr", 1e-6, 2e6), np.linspace(-2e-6, 1e-6, 60)
+    force = tip.law(2e6, tip.work, -np.concatenate([up[::-1], up]))[up.size :]
+    noise = 0.005 * np.abs(force).max() * np.random.default_rng(1).standard_normal(force.size)
+    measured = pd.DataFrame({"separation": up, "force": force + noise})
+    start = tip.start(np.random.default_rng(2), free)
+    right, wrong = (rm.fit(rows, tip.scene(), free, set=start) for rows in (measured, measured[::-1]))
+    assert "last row" not in right.attrs.get("warnings", "")
+    assert re.search("read from its last row to its first the curve is fitted better, to 0.4", wrong.attrs["warnings"])
 
 
 def test_behind_a_cantilever() -> None:
@@ -194,7 +207,7 @@ def test_an_offset_far_away_is_shown_to_its_error() -> None:
 def test_intervals_hold_the_true_values(kind: str, stated: bool) -> None:
     """40 draws of each combination with each noise, from nanometres to millimetres: 92 to 98 % of the intervals.
 
-    Among them, those of a JKR offset hold it oftener: a jump between two steps bounds it more narrowly than its error.
+    Among them, those of a JKR offset hold it oftener: they end where a jump would pass a step, and no true value does.
     """
     hits = dict[str, list[bool]]()
     for free, noise, seed in product(COMBINATIONS[kind], NOISES, range(40)):

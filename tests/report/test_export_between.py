@@ -9,12 +9,11 @@ from typing import Any
 import numpy as np
 import pytest
 import xarray as xr
-from click.testing import CliRunner, Result
 from exports import header_of
 from scenes import ASPERITIES, scene
+from scipy.ndimage import gaussian_filter
 
 import roughmdr as rm
-from roughmdr.cli import main
 from roughmdr.report.export.law import QUANTITIES, law_of
 from roughmdr.report.export.table import table_of
 from roughmdr.report.export.thin import RELATIVE_FROM
@@ -116,30 +115,78 @@ def test_tables_of_all_kinds_are_within_their_error(changes: dict[str, Any]) -> 
     assert np.median(found) > 0.5
 
 
-def test_an_error_that_jumps_do_not_allow_is_refused_with_what_would_do(tmp_path: Path) -> None:
-    def exported(name: str) -> Result:
-        call = ["export", str(tmp_path / f"{name}.nc"), "-o", str(tmp_path / f"{name}.csv"), "--to", "csv"]
-        return CliRunner().invoke(main, [*call, "--error", "0.01"])
+def correlated(seed: int, steps: int, **changes: Any) -> dict[str, Any]:
+    """Radii that follow from the heights: there is no expected law."""
+    made = drawn(seed, steps, **changes)
+    made["asperities"] |= {"correlation": {"radius": 1.0}}
+    return made
 
-    rm.run(drawn(6, 60), tmp_path / "few.nc")
-    refused = exported("few")
-    assert refused.exit_code == 2
-    assert not (tmp_path / "few.csv").exists()
-    known, ask, steps, runs = re.search(
-        r"the pressure is known to (\S+) only: ask for an error of (\S+), or compute about (\d+) steps and (\d+) real",
-        " ".join(refused.output.split()),
-    ).groups()
-    assert 0.01 < float(known) < float(ask)
-    rm.export(tmp_path / "few.nc", tmp_path / "few.csv", to="csv", error=float(ask))
-    rm.run(drawn(6, int(steps), batch={"realizations": int(runs)}), tmp_path / "more.nc")
-    done = exported("more")
-    assert done.exit_code == 0, done.output
-    assert "jumps between the steps included: estimated from the steps, which holds in 97 % of cases" in header_of(
-        tmp_path / "more.csv"
+
+def on_map(file: Path, steps: int, **changes: Any) -> dict[str, Any]:
+    """The summits of one map of 1 mm, rough by 1 um over 30 um, which is made here."""
+    rough = gaussian_filter(np.random.default_rng(1).standard_normal((128, 128)), 4.0, mode="wrap")
+    at = (np.arange(128) + 0.5) / 128 * 1e-3
+    data = xr.Dataset({"height": (("x", "y"), 1e-6 * rough / rough.std())}, coords={"x": at, "y": at})
+    data.assign_attrs(periodic=1).to_netcdf(file)
+    path = {"separation": {"start": "clear", "stop": "1 um", "steps": steps}, "unload": True}
+    return (
+        drawn(1, steps) | {"asperities": {"source": "surface", "file": str(file)}, "path": path, "batch": {}} | changes
     )
+
+
+def tip(steps: int) -> dict[str, Any]:
+    """One tip, whose jumps are beyond what a load can follow."""
+    made = drawn(1, steps, batch={"estimator": "expected"}, material={"modulus": "1 MPa", "poisson": 0.5})
+    made["asperities"] = ASPERITIES | {"count": 1, "height": 0, "radius": "10 um", "patch": "100 um"}
+    made["path"]["separation"] |= {"start": "0.5 um", "stop": "-1 um"}
+    return made
+
+
+REFUSED = {
+    "expected": (lambda folder: drawn(1, 60, batch={"estimator": "expected"}), "or compute about"),
+    "sampled": (lambda folder: drawn(6, 60), "take the expected law, which has no such jumps"),
+    "no expected law": (lambda folder: correlated(4, 40), "steps and [0-9]+ realisations"),
+    "hertz": (lambda folder: drawn(1, 30, adhesion=None), "take the expected law"),
+    "map": (lambda folder: on_map(folder / "map.nc", 40, adhesion=None), "or compute about [0-9]+ steps$"),
+    "tip": (lambda folder: tip(20), "or compute about [0-9]+ steps$"),
+}
+
+
+@pytest.mark.parametrize("kind", REFUSED)
+def test_a_refused_table_is_written_once_what_is_asked_for_is_done(kind: str, tmp_path: Path) -> None:
+    make, says = REFUSED[kind]
+    table = make(tmp_path)
+    few = rm.run(table)
+    out = tmp_path / "law.csv"
+    asked = {"to": "csv", "quantity": "area" if kind == "map" else "pressure", "branch": "unloading", "error": 0.005}
+    with pytest.raises(rm.StoreError, match=says) as refused:
+        rm.export(few, out, **asked)
+    assert not out.exists()
+    text = str(refused.value)
+    if larger := re.search("ask for an error of (.*?), or", text):
+        rm.export(few, out, **asked | {"error": float(larger[1])})
+    steps, runs = re.search(r"about (\d+) steps(?: and (\d+) real)?", text).groups()
+    table["path"]["separation"]["steps"] = int(steps)
+    if runs:
+        table["batch"] = {"realizations": int(runs)}
+    elif "expected law" in text:
+        table["batch"] = {"estimator": "expected"}
+    assert int(steps) < 20 * few.sizes["step"]
+    rm.export(rm.run(table), out, **asked)
+    assert "jumps between the steps included: estimated from the steps, which holds in 97 % of cases" in header_of(out)
+
+
+def test_more_steps_are_not_asked_for_where_contacts_of_one_map_jump(tmp_path: Path) -> None:
+    few = rm.run(on_map(tmp_path / "map.nc", 60, adhesion={"model": "jkr", "work": "50 mJ/m^2"}))
+    with pytest.raises(
+        rm.StoreError, match=r"take a larger surface, whose contacts jump by less.*more steps do not help"
+    ):
+        rm.export(few, tmp_path / "law.csv", to="csv", error=1e-3)
 
 
 def test_of_three_steps_nothing_is_known_between() -> None:
     few = rm.run(drawn(1, 3))
-    with pytest.raises(rm.StoreError, match="the loading has 3 steps: what is between them is known of 4 or more"):
+    with pytest.raises(
+        rm.StoreError, match="the loading has 2 steps in contact: what is between them is known of 4 or more"
+    ):
         rm.export(few, "few.csv", to="csv", error=0.1)

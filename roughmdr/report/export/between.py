@@ -1,6 +1,4 @@
-"""How far a law may be off the lines between the points of its stable part, and what would bring it nearer."""
-
-import math
+"""How far a law may be off the lines between the points of its stable part."""
 
 import numpy as np
 
@@ -9,22 +7,17 @@ from roughmdr.report.export.law import Law, Quantity
 from roughmdr.report.export.stable import StablePart
 from roughmdr.result.between import ANYWHERE, REACH, off_line
 
-_MARGIN = 1.5
-"""Factor on steps and realisations that are foreseen to do."""
-_FOR_JUMPS = 0.75
-"""Largest share of an allowed error that jumps may take; the rest is for the bend."""
-
 
 def between_points(law: Law, part: StablePart, quantity: Quantity) -> Floats:
     """Return how far a law may be off the line between neighbouring points, bent and by jumps: [2, point - 1].
 
     Over the pressure, value and pressure jump together: what counts is the value less the slope times the pressure. The
     slope is taken over three steps, since one step of the pressure may be tiny. Where a load jumps over steps, the line
-    may be off by its whole rise.
+    may be off by its whole rise. Steps beyond the stable part, where contact is made or lost, say nothing of it.
     """
     x, y = (part.pressure, part.value) if quantity.over_pressure else (part.overclosure, part.value)
     steps = np.arange(law.separation.size - 1)[:, None] + np.arange(-REACH, REACH + 2)
-    there = (steps >= 0) & (steps < law.separation.size)
+    there = (steps >= np.floor(part.step[0])) & (steps <= part.step[-1])
     steps = np.where(there, steps, 0)
     around = law.value[steps]
     if quantity.over_pressure:
@@ -45,22 +38,3 @@ def between_points(law: Law, part: StablePart, quantity: Quantity) -> Floats:
         elif last > first + 1:
             found[1, point] += abs(y[point + 1] - y[point])
     return found
-
-
-def remedy(law: Law, bent: float, jumps: float) -> str:
-    """Return what would reduce errors between steps, given over those allowed, to 1.
-
-    By a bend they fall with the square of the number of steps; by jumps with the root of the number of realisations,
-    while more steps do not help against the largest of them.
-    """
-    if law.realizations == 0:
-        more = max((_MARGIN * (bent + jumps)) ** 0.5, _MARGIN * jumps)
-        return f"compute about {math.ceil(law.separation.size * more)} steps"
-    steps, runs = law.separation.size, law.realizations
-    for_jumps = min(_MARGIN * jumps, _FOR_JUMPS)
-    more_steps = max(_MARGIN * bent / (1.0 - for_jumps), 1.0) ** 0.5
-    more_runs = max(_MARGIN * jumps / _FOR_JUMPS, 1.0) ** 2
-    asked = [f"{math.ceil(steps * more_steps)} steps"] if more_steps > 1.0 else []
-    if more_runs > 1.0:
-        asked.append(f"{math.ceil(runs * more_runs)} realisations, or take the expected law, which has no jumps")
-    return f"compute about {' and '.join(asked)}"

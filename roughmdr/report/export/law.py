@@ -64,6 +64,8 @@ class Law(NamedTuple):
     """Of ``value`` over the realisations, NaN of one: [step]."""
     realizations: int
     """Number of which it is the mean; 0 of an expected law."""
+    scene: str
+    """The scene of the result, in TOML."""
 
 
 def law_of(cell: Labelled, quantity: Quantity, branch: str) -> Law:
@@ -85,7 +87,7 @@ def law_of(cell: Labelled, quantity: Quantity, branch: str) -> Law:
     pressure, _, _ = _mean(cell, _PRESSURE, steps)
     value, error, source = _mean(cell, quantity, steps)
     runs = 0 if estimator_of(cell) == "expected" else realizations_of(cell)
-    return Law(source, separation[steps], pressure, value, error, runs)
+    return Law(source, separation[steps], pressure, value, error, runs, cell.attrs["scene"])
 
 
 def _leg(separation: Floats, branches: Ints, branch: str) -> Ints:

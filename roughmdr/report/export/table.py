@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from roughmdr.errors import StoreError
-from roughmdr.report.export.between import between_points, remedy
+from roughmdr.report.export.between import between_points
 from roughmdr.report.export.law import Law, Quantity
 from roughmdr.report.export.stable import StablePart, stable_part
 from roughmdr.report.export.thin import RELATIVE_FROM, knots, tolerances
@@ -13,6 +13,8 @@ from roughmdr.schema.units import format_quantity
 
 MOST_ERROR = 0.1
 """Largest error that a table may have, over the value."""
+_FEWEST = 4
+"""Steps that tell how far a law is off the lines between them."""
 
 
 class Table(NamedTuple):
@@ -50,8 +52,11 @@ def _table_of(law: Law, quantity: Quantity, branch: str, error: float, *, with_t
     largest = float(np.abs(y).max())
     if not largest > 0.0 or x.size < 2:
         raise StoreError(f"the {branch} has no {quantity.name} at more than one step: there is no law to export")
-    if law.separation.size < 4:
-        raise StoreError(f"the {branch} has {law.separation.size} steps: what is between them is known of 4 or more")
+    steps = int(part.step[-1] - np.floor(part.step[0])) + 1
+    if steps < _FEWEST:
+        raise StoreError(
+            f"the {branch} has {steps} steps in contact: what is between them is known of {_FEWEST} or more"
+        )
     lines = between_points(law, part, quantity)
     before, after = (np.pad(lines, ((0, 0), end)) for end in ((1, 0), (0, 1)))
     bent, jumps = np.maximum(before, after)
@@ -59,11 +64,13 @@ def _table_of(law: Law, quantity: Quantity, branch: str, error: float, *, with_t
     if not (np.isfinite(between / allowed).all() and np.isfinite(part.datum)):
         raise StoreError(f"no float holds the {quantity.name} of the {branch}: there is no law to export")
     if (between > allowed).any():
+        from roughmdr.report.export.remedy import remedy
+
         reached = error * float((between / allowed).max())
         ask = f"ask for an error of {1.1 * reached:.2g}, or " if 1.1 * reached < MOST_ERROR else ""
         raise StoreError(
             f"error is {error:g}, and between the steps of the path the {quantity.name} is known to {reached:.2g} "
-            f"only: {ask}{remedy(law, float((bent / allowed).max()), float((jumps / allowed).max()))}"
+            f"only: {ask}{remedy(law, quantity, float((bent / allowed).max()), float((jumps / allowed).max()))}"
         )
     kept = knots(x, y, allowed - between)
     off = np.abs(np.interp(x, x[kept], y[kept]) - y) + between

@@ -1,0 +1,66 @@
+"""How the jumps of a law cut the intervals of its parameters.
+
+A jump lies between two measured steps, however uncertain it is by the standard errors of the parameters, if beyond one
+of them the law would miss the load measured there by much more than the noise.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from roughmdr.fitting.jumps import nearest_in, places_of, projected
+from roughmdr.fitting.model import Model
+from roughmdr.fitting.search import Found
+from roughmdr.numerics.arguments import Floats
+
+_CERTAIN = 25.0  # least increase of the sum of squares beyond an edge, over the variance of the noise: five deviations
+_BISECTIONS = 50  # of the multiple of a direction
+_LARGEST = 1e9  # such multiple, over the least that may be long enough
+
+
+class Edges(NamedTuple):
+    """Bounds of the changes of x: sides @ change <= ends."""
+
+    sides: Floats
+    """[edge, parameter]"""
+    ends: Floats
+    """[edge], at least 0."""
+
+
+def certain_edges(model: Model, found: Found) -> Edges:
+    """Return the edges of the interval between jumps beyond which the law misses a load by much more than the noise."""
+    here, edges = model.point(found.x), list[tuple[Floats, float]]()
+    jumps = model.jumps_at(found.x) if model.jumps else None
+    left = np.linalg.svd(found.slopes, full_matrices=False)[0]
+    least = float(np.sum(np.square(found.deviations)))
+    noise = least / found.deviations.size if model.curve.error is None else 1.0
+    if jumps is not None:
+        places, slopes = places_of(model, here.jumps, jumps)
+        ends = np.stack([places, 1.0 - places])
+        for (side, jump), end in np.ndenumerate(np.maximum(ends, 0.0)):
+            sign = (-1, 1)[side]
+            next_one = np.array(here.jumps) + sign * (np.arange(places.size) == jump)
+            beyond = nearest_in(model, here, tuple(next_one.tolist()), jumps)
+            if beyond is not None and _least_by(left, beyond.deviations) - least > _CERTAIN * noise:
+                edges.append((sign * slopes[jump], end))
+    sides = np.array([side for side, _ in edges]).reshape(-1, found.x.size)
+    return Edges(sides, np.array([end for _, end in edges]))
+
+
+def _least_by(left: Floats, deviations: Floats) -> float:
+    """Return the least sum of squares to which parameters can lead, as the linear law has it."""
+    return float(np.sum(np.square(deviations)) - np.sum(np.square(left.T @ deviations)))
+
+
+def farthest(direction: Floats, radius: float, edges: Edges) -> float:
+    """Return the largest direction . u of the vectors u within edges that are no longer than ``radius``.
+
+    That one is nearest to a multiple of the direction, among those within the edges, and grows with it.
+    """
+    low = 0.5 * radius / float(np.linalg.norm(direction) or 1.0)
+    high = _LARGEST * low
+    for _ in range(_BISECTIONS):
+        middle = float(np.sqrt(low * high))
+        nearest = projected(middle * direction, *edges)
+        low, high = (low, middle) if np.linalg.norm(nearest) > radius else (middle, high)
+    return float(direction @ projected(low * direction, *edges))
