@@ -131,7 +131,7 @@ class FirstCurve(NamedTuple):
         if force == 0.0 or reduced == 0.0:  # full slip
             return
         way, slipped = last - place, force - reduced
-        if way == 0.0 or slipped <= 0.0 or max(abs(last) / way, force / slipped) > _MAX_RATIO:
+        if slipped <= 0.0 or max(abs(last) / way, force / slipped) > _MAX_RATIO:
             raise OutOfRange(
                 f"friction {self.tangential.friction:g} is so large, or the displacement so small, that rounding "
                 "leaves less than six digits of the tangential force: the contacts stick, with the "

@@ -224,6 +224,14 @@ def test_points_that_are_not_there_are_undefined_and_scattered_ones_refused(tmp_
     holes = read_map(path, unit="um").height
     assert holes.shape == HEIGHT.shape
     assert np.isnan(holes).ravel().nonzero()[0].tolist() == [30, 31]
+    kept = np.random.default_rng(2).permutation(NX * NY)
+    np.savetxt(path, columns[np.sort(kept[:144])], fmt="%.6g")
+    assert np.isnan(read_map(path, unit="um").height).sum() == 96
+    np.savetxt(path, columns[kept[:100]], fmt="%.6g")
+    with pytest.raises(rm.errors.RoughmdrError, match="do not lie on an evenly spaced grid"):
+        read_map(path, unit="um")
+    np.savetxt(path, columns * [2.0 / 3.0, 2.0 / 3.0, 1.0], fmt="%.1f")  # 0, 0.3, 0.7, 1, ...
+    assert read_map(path, unit="um").height.shape == (NX, NY)
     np.savetxt(path, [*columns, columns[7]], fmt="%.6g")
     with pytest.raises(rm.errors.RoughmdrError, match="lines 8 and 241 give a height to one point"):
         read_map(path, unit="um")

@@ -56,6 +56,11 @@ def test_errors_weight_the_points() -> None:
     assert curve.error == pytest.approx(np.full(4, 2e-3))
 
 
+def test_without_errors_the_largest_load_weighs_all_points_also_those_out_of_contact() -> None:
+    frame = pd.DataFrame([(3.0, 0.0), (2.0, 0.0), (1.0, -5.0), (0.0, 2.0)], columns=["separation [um]", "force [nN]"])
+    assert read_measured(frame, 1).weight == pytest.approx(np.full(4, 5e-9), rel=1e-12)
+
+
 @pytest.mark.parametrize(
     ("text", "message"),
     [

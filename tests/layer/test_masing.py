@@ -108,3 +108,8 @@ def test_a_path_at_rest_has_no_force() -> None:
     force, lost = along(np.zeros(4))
     assert not force.any()
     assert not lost.any()
+
+
+def test_what_is_lost_never_falls_by_roundings() -> None:
+    memory = Masing.along(np.array([1.0, 2.0, 3.0]))
+    np.testing.assert_array_equal(memory.loss(np.array([1.0, 1.0 - 2e-16, 2.0])), [1.0, 1.0, 2.0])

@@ -13,8 +13,9 @@ from roughmdr import OutOfRange
 from roughmdr.aggregate import LoadingPath, LoadSeparation, simulate
 from roughmdr.ensemble.ensemble import Ensemble
 from roughmdr.kernels.adhesion import Adhesion
-from roughmdr.layer.slip import Tangential, partial_slip
+from roughmdr.layer.slip import FirstCurve, Tangential, partial_slip
 from roughmdr.loading.masing import Masing
+from roughmdr.loading.pull_off import WITHOUT_TENSION
 from roughmdr.numerics.arguments import Floats
 from roughmdr.schema.two_bodies import dundurs_beta, stiffness_ratio
 
@@ -185,3 +186,40 @@ def test_special_pairs_of_bodies() -> None:
         assert stiffness_ratio(1e9, nu, 1e9, nu) == pytest.approx(stiffness_ratio(1e9, nu), rel=1e-15)
         assert dundurs_beta(1e9, nu, 1e9, nu) == 0.0
         assert dundurs_beta(1e9, nu) == pytest.approx((1.0 - 2.0 * nu) / (2.0 * (1.0 - nu)), rel=1e-15)
+
+
+@pytest.mark.parametrize("unit", [1e-9, 1.0])
+@pytest.mark.parametrize(
+    ("force", "way", "fits"),
+    [
+        ([2.0, 2.0 - 1e-8], 1e-3, True),
+        ([2.0, 2.0 - 1e-10], 1e-3, False),
+        ([2.0, 2.0], 1e-3, False),
+        ([2.0, 1.0], 1e-9, True),
+        ([2.0, 1.0], 1e-11, False),
+        ([2.0, 0.0], 1e-11, True),
+        ([0.0, 0.0], 1e-11, True),
+    ],
+)
+def test_six_digits_must_be_left_but_of_full_slip(force: list[float], way: float, fits: bool, unit: float) -> None:
+    first = FirstCurve({"force": unit * np.array(force)}, unit * np.array([1.0, 1.0 + way]), Tangential(E, RATIO, MU))
+    if fits:
+        first.check_digits()
+        return
+    with pytest.raises(OutOfRange, match="less than six digits of the tangential force"):
+        first.check_digits()
+
+
+def test_a_lateral_path_has_no_pull_off() -> None:
+    law = simulate(
+        rough(), LoadingPath.along(np.array([0.0]), unload=False, adhesive=False),
+        effective_modulus=E, adhesion=Adhesion(), variables=["force"],
+    )  # fmt: skip
+
+    def normal(separation: Floats, names: list[str]) -> LoadSeparation:
+        force = np.linspace(1.0, 0.0, separation.size)
+        return law._replace(variables={"force": force}, pull_off=WITHOUT_TENSION)
+
+    path = Masing.along(np.array([1e-6, 2e-6]))
+    found = partial_slip(normal, 0.0, path, Tangential(E, RATIO, MU), [FORCE]).pull_off
+    assert math.isnan(found.force)

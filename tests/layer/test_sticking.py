@@ -1,6 +1,7 @@
 """The tangential stiffness of contacts that stick and feel each other, against the coupled discs themselves."""
 
 import math
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -103,3 +104,15 @@ def test_a_scene_has_it_with_its_error(changes: dict[str, Any]) -> None:
     assert (found.tangential_error <= least + (1.0 - ratio) * 2.2 * 0.1).all()
     without = rm.run({**made, "output": {"variables": ["force"]}})
     assert "tangential_error" not in without
+
+
+def test_where_directions_are_not_at_random_many_contacts_cancel_nothing(tmp_path: Path) -> None:
+    """Asperities of a file may stand in line: their error is not less by the root of their number."""
+    rm.generate(PLACED, seed=0).to_netcdf(tmp_path / "mine.nc")
+    names, extra = ["tangential_stiffness", "conductance_radius", "contact_fraction", "contact_count"], []
+    for asperities in (PLACED, {"source": "file", "file": str(tmp_path / "mine.nc")}):
+        made = scene(asperities=asperities, path=PATH, output={"variables": names}, tangential={}, adhesion=None)
+        found = rm.run({**made, "seed": 0, "batch": {"realizations": 1}})
+        share = found.contact_fraction / (found.contact_count if asperities is PLACED else 1.0)
+        extra.append(float(((found.tangential_error - found.conductance_error) / np.sqrt(share.max("step"))).squeeze()))
+    assert extra[1] == pytest.approx(extra[0], rel=1e-9)

@@ -90,3 +90,11 @@ def test_of_statistics_the_least_is_kept() -> None:
     table = few(batch={"realizations": 5})
     curves, statistics = rm.run(table), rm.run(table | {"output": {"keep": "statistics"}})
     assert float(statistics.effective_contacts) == float(curves.effective_contacts.min())
+
+
+def test_of_several_cells_the_median_of_each_counts_and_the_fewest_scatter_most() -> None:
+    runs = [np.array([4.0, 5.0, 100.0]), np.array([7.0, np.nan]), np.array([40.0]), np.array([np.nan])]
+    ((name, told),) = sample_lines(runs, 'asperities = { source = "surface" }')
+    assert name == "sample"
+    assert told.startswith("about 5 to 7 contacts carry the load at closest approach in 2 of 3 cells: one map is one")
+    assert told.endswith("the load of another differs by up to about 45 %")

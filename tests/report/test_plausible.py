@@ -61,6 +61,14 @@ def test_pressures_that_no_contact_bears_are_told_of(plan: Any) -> None:
     assert "on average at closest approach, more than E*, 6.58 MPa" in told
 
 
+def test_no_contact_bears_more_than_diamond_whatever_its_modulus(plan: Any) -> None:
+    """At closest approach, wherever on the path that is."""
+    size = {"across": "6.4 um", "down": "6.4 um"}
+    for more in ([], ["--set", "path.unload=true", "--set", "path.separation.start=9 sigma"]):
+        told = plan("--set", "material.modulus=1e13", *more, size=size, unit="nm")
+        assert "on average at closest approach, more than the hardness of diamond, 100 GPa" in told
+
+
 def test_a_plausible_map_is_not_doubted(plan: Any) -> None:
     told = plan(size={"across": "6.4 um", "down": "6.4 um"}, unit="nm")
     assert told.startswith("scene ")

@@ -19,7 +19,11 @@ from roughmdr.runner.backend import Backend
 from roughmdr.runner.run import execute
 from roughmdr.scene import read as read_scene
 from roughmdr.storage.files import replace_atomically
+from roughmdr.storage.labelled import Labelled
 from roughmdr.storage.result_file import read_result
+from roughmdr.storage.result_form import statistics_of
+from roughmdr.storage.result_validation import as_result
+from roughmdr.variables import LAW_VARIABLES
 
 
 @pytest.fixture
@@ -88,6 +92,20 @@ def test_what_is_no_result_is_refused(tmp_path: Path) -> None:
     xr.Dataset({"a": ("x", [1.0])}).to_netcdf(tmp_path / "other.nc")
     with pytest.raises(rm.StoreError, match="not a result as roughmdr writes it"):
         read_result(tmp_path / "other.nc")
+
+
+def test_statistics_of_which_one_is_left_are_refused(statistics: xr.Dataset) -> None:
+    groups = [[each for each in statistics_of(name) if each in statistics] for name in LAW_VARIABLES]
+    for here in filter(None, groups):
+        for kept in here:
+            with pytest.raises(rm.StoreError, match=f"it has {kept} but no"):
+                as_result(Labelled.of(statistics.drop_vars(set(here) - {kept})))
+
+
+def test_runs_have_no_steps(statistics: xr.Dataset) -> None:
+    status = statistics.status.expand_dims(step=statistics.sizes["step"])
+    with pytest.raises(rm.StoreError, match="status has the dimensions step"):
+        as_result(Labelled.of(statistics.assign(status=status)))
 
 
 _ENDLESS = """
