@@ -37,7 +37,7 @@ from roughmdr.loading.staircase import no_memory
 from roughmdr.model_error import Assumptions, Givens
 from roughmdr.model_error.distances import FEW, error_of_few
 from roughmdr.model_error.interaction import poisson_overlap
-from roughmdr.numerics.arguments import Floats
+from roughmdr.numerics.arguments import Floats, Ints
 
 _MAX_ERROR = 0.1  # of the largest force: a larger error is refused
 _KERNEL_ERROR = 1e-12  # of the force of a contact, as the kernels are tested
@@ -130,11 +130,11 @@ def _neighbours_error(source: Source, total: Floats) -> Floats | None:
 @np.errstate(all="ignore")  # numbers that no float can hold are refused where the whole law is computed
 def force_of_equal_shapes(
     source: Source, path: LoadingPath, effective_modulus: float, adhesion: Adhesion
-) -> tuple[Floats, float]:
-    """Return the force [N] alone at each step, of asperities whose shape parameters are not drawn, and its error bound
-    over its largest value.
+) -> tuple[Floats, float, Ints]:
+    """Return the force [N] alone at each step, of asperities whose shape parameters are not drawn, its error bound over
+    its largest value, and how many populations of one height are in contact at each step.
 
-    They are those of ``compute``; E* [Pa]. OutOfRange where a contact is not representable.
+    Force and error are those of ``compute``; E* [Pa]. OutOfRange where a contact is not representable.
     """
     if len(adhesion.candidates) > 1:
         one = as_ensemble(source, source.nodes(Rule.smooth(1))).nondimensional()
@@ -144,7 +144,11 @@ def force_of_equal_shapes(
     total, _ = totals_of(nodes, path.separation, (FORCE,), list(range(path.separation.size)))
     largest = float(np.abs(total[FORCE]).max())
     error = _KERNEL_ERROR + (float(total[ERROR].max()) / largest if largest > 0.0 else 0.0)
-    return source.expected_count * total[FORCE], error
+    touching = np.zeros(path.separation.size, dtype=np.int64)
+    for node in nodes:
+        if node.heights.all_equal:
+            touching[node.in_contact.at_steps(np.ones(touching.size, dtype=np.bool_)).around(0.0).step] += 1
+    return source.expected_count * total[FORCE], error, touching
 
 
 def _shift(problem: Problem, interaction: Interaction | None) -> Shift | None:

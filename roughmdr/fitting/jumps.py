@@ -1,8 +1,9 @@
 """Least squares of a law whose contact jumps, interval by interval.
 
 As a jump of the law passes a measured step, the sum of squares jumps as well. Between, it is smooth, and has a minimum
-for each interval: the pair of steps between which contact is made, and that between which it is lost. It is found by
-Gauss and Newton's method with the edges of the interval as constraints, and neighbouring intervals are tried from it.
+for each interval: the pair of steps between which contact is made, and that between which it is lost, by each
+population of one height. It is found by Gauss and Newton's method with the edges of the interval as constraints, and
+neighbouring intervals are tried from it.
 """
 
 from collections.abc import Iterator
@@ -61,7 +62,10 @@ def _measured(model: Model, jumps: Interval) -> Interval:
     turns = np.sign(np.diff(model.curve.values))
     way = np.cumsum(np.diff(turns, prepend=turns[0]) != 0.0)
     change = np.abs(np.diff(model.curve.load))
-    return tuple(int(np.argmax(np.where(way == way[jump], change, -1.0))) for jump in jumps)
+    found = list[int]()
+    for each, count in zip(*np.unique(way[list(jumps)], return_counts=True), strict=True):
+        found += np.sort(np.argsort(np.where(way == each, change, -1.0))[-count:]).tolist()
+    return tuple(found)
 
 
 def _neighbours(interval: Interval) -> Iterator[Interval]:

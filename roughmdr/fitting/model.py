@@ -102,17 +102,21 @@ class Model:
             raise OutOfRange("the expected law is not finite")
         return law
 
-    def _load(self, x: Floats, values: Floats) -> tuple[Floats, float]:
-        """Return the load of the law along a control, and its relative error; RoughmdrError where there is none."""
+    def _load(self, x: Floats, values: Floats) -> tuple[Floats, float, NDArray[np.integer]]:
+        """Return the load of the law along a control, its relative error, and a number that changes at each step at
+        which asperities of one height make or lose contact; RoughmdrError where there is no law.
+        """
         self.evaluations += 1
         scene = self.scene(x)
         path = self._path_in(scene, x, values)
         if not (self._is_plain and isinstance(path, LoadingPath)):
             law = simulate_realization(scene, path, 0, [self.curve.quantity], "expected")
-            return law.variables[self.curve.quantity], law.numerical_error
+            load = law.variables[self.curve.quantity]
+            return load, law.numerical_error, (load != 0.0).astype(np.int64)
         modulus, adhesion = scene.effective_modulus, scene.adhesion_model
-        force, error = force_of_equal_shapes(scene.asperities, path, modulus, adhesion)
-        return (force if self.curve.quantity == "force" else force / (scene.nominal_area or np.nan)), error
+        force, error, touching = force_of_equal_shapes(scene.asperities, path, modulus, adhesion)
+        area = 1.0 if self.curve.quantity == "force" else scene.nominal_area or np.nan
+        return force / area, error, touching
 
     def _path_in(self, scene: Scene, x: Floats, values: Floats) -> LoadingPath | MachinePath:
         """Return the path of the flat or of its machine in the scene."""
@@ -145,14 +149,14 @@ class Model:
 
     def _point(self, x: Floats) -> Point:
         try:
-            load, error = self._load(x, self.curve.values)
+            load, error, touching = self._load(x, self.curve.values)
         except RoughmdrError as failure:
             self.last_error = failure
-            load, error = np.full(self.curve.load.size, np.inf), 0.0
+            return Point(x, np.full(self.curve.load.size, np.inf), 0.0, ())
         found = (load - self.curve.load) / self.curve.weight
         if not np.isfinite(found).all():
             return Point(x, np.full(found.size, np.inf), 0.0, ())
-        return Point(x, found, error, tuple(_changes(load != 0.0).tolist()))
+        return Point(x, found, error, tuple(_changes(touching).tolist()))
 
     def jumps_at(self, x: Floats) -> Jumps | None:
         """Return where the contact is made and lost; None where the law, there or nearby, has no or other jumps."""
@@ -169,13 +173,14 @@ class Model:
         at = np.array(self._point(x).jumps, dtype=int)
         first, last = self.curve.values[at], self.curve.values[at + 1]
         for _ in range(_REFINEMENTS if at.size else 0):
-            between = np.linspace(first, last, _FINER + 1)
-            finer = np.insert(self.curve.values, np.repeat(at + 1, _FINER + 1), between.T.ravel())
+            apart = np.append(True, (np.diff(first) != 0.0) | (np.diff(at) > 0))  # others share an interval
+            between = np.linspace(first[apart], last[apart], _FINER + 1)
+            finer = np.insert(self.curve.values, np.repeat(at[apart] + 1, _FINER + 1), between.T.ravel())
             try:
-                force, _ = self._load(x, finer)
+                _, _, touching = self._load(x, finer)
             except RoughmdrError:
                 return np.empty(0)
-            found = _changes(force != 0.0)
+            found = _changes(touching)
             if found.size != at.size:
                 return np.empty(0)
             first, last = finer[found], finer[found + 1]
@@ -235,9 +240,10 @@ class Model:
         return table
 
 
-def _changes(contact: NDArray[np.bool_]) -> NDArray[np.intp]:
-    """Return the steps after which the contact is made or lost."""
-    return np.flatnonzero(np.diff(contact))
+def _changes(touching: NDArray[np.integer]) -> NDArray[np.intp]:
+    """Return the steps after which contact is made or lost, each as often as that happens there."""
+    changes = np.abs(np.diff(touching))
+    return np.repeat(np.arange(changes.size), changes)
 
 
 def scene_to_fit(source: Any, changes: Any, curve: MeasuredCurve, free: list[str]) -> Scene:

