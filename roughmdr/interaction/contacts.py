@@ -17,6 +17,7 @@ import math
 from collections.abc import Callable
 from typing import NamedTuple
 
+from roughmdr.interaction.tip_edge import held, level, whole_edge
 from roughmdr.kernels.interface import Kernels
 from roughmdr.kernels.profile.interface import ProfileKernels
 from roughmdr.numerics.arguments import Floats
@@ -47,8 +48,10 @@ class Contacts(NamedTuple):
     state: Floats
     """The state t of its kernels."""
     load: Floats
-    stiffness: Floats
+    growth: Floats
     """Slope of the load over x."""
+    stiffness: Floats
+    """Slope of the load over the indentation; over x, unless the edge of a tip holds the contact."""
     radius: Floats
     """Of the contact; that of a flat punch, which is its own, also out of contact."""
     lift: Floats
@@ -61,6 +64,12 @@ class Contacts(NamedTuple):
     """How far the contact moves for a tilt of 1: 2 a/g'(a), but no farther than to the new top."""
 
 
+Slid = tuple[float, float]
+"""How much deeper a contact lies that has slid, and its ``slide``."""
+Tipped = tuple[float, float, float, float]
+"""The same of one that the edge of its tip holds, what is to be added to 1/a, and K over 4/3 a^3."""
+
+
 Terms = tuple[float, float, float, float, float]
 """a, da/dt, g, dg/dt and ∫ x g' dx over the natural size and depth."""
 
@@ -70,6 +79,8 @@ class CoupledKernels(Kernels):
 
     pinned = False
     flat = False
+    edged = False
+    """Whether the tip is a flat, or a cap that ends at an edge."""
     terms: Callable[..., Terms]
     """(t, params) -> the terms at a state."""
     cubic_integral: Callable[..., float]
@@ -79,10 +90,18 @@ class CoupledKernels(Kernels):
     minus the radius, where the contact lies within the flat of a tip."""
     newton_state: Callable[..., float]
     """As ``curved_state``, by iteration, where that has a closed form for some."""
+    loaded_state: Callable[..., float]
+    """(load, t, ratio, params) -> the state with a load on such a surface, from a guess t."""
     top: Callable[..., float]
     """(t, tilt, ratio, params) -> the radius from t on where dg/da is the tilt, over natural size."""
     bisected_top: Callable[..., float]
     """As ``top``, by bisection."""
+    slid: Callable[..., Slid]
+    """(t, a, dg/da, tilt, ratio, depth, size, params) -> a contact on a tilted surface."""
+    edge_curvature: Callable[..., float]
+    """(ratio, params) -> the curvature of the gap between tip and surface."""
+    tipped: Callable[..., Tipped]
+    """(load, tilt, ratio, depth, size, params) -> one whose load leaves part of the edge of its tip out of contact."""
     load_alone: Callable[..., None]
     respond: Callable[..., int]
 
@@ -122,12 +141,20 @@ def cubic_integral_of_profile(t: float, params: Floats) -> float:
 
 
 def curved_state(t: float, ratio: float, params: Floats) -> float:
-    """Find the state by Newton's method: from t on downwards, as load and curvature add up."""
+    """Find the state from that alone on downwards, as load and curvature add up."""
     load, added = law.terms(t, params)[4], 2.0 / 3.0 * ratio
     if law.flat:
         flat = law.terms(0.0, params)[0]
         if load <= added * flat * flat * flat:
             return -math.pow(load / added, 1.0 / 3.0) if load > 0.0 else -0.0
+    return float(law.loaded_state(load, t, ratio, params))
+
+
+def loaded_state(load: float, t: float, ratio: float, params: Floats) -> float:
+    """Find the state by Newton's method, from one with at least the load alone on downwards."""
+    added = 2.0 / 3.0 * ratio
+    while law.terms(t, params)[4] < load:
+        t *= 2.0
     for _ in range(_MAX_ITERATIONS):
         a, da, _, dg, own = law.terms(t, params)
         step = (own + added * a * a * a - load) / (a * (dg + 3.0 * added * a * da))
@@ -169,11 +196,43 @@ def top_of_power(t: float, tilt: float, ratio: float, n: float) -> float:
     return 0.5 * tilt / (1.0 + ratio) if n == 2.0 else float(law.bisected_top(t, tilt, ratio, n))
 
 
+def slid(
+    t: float, a: float, slope: float, tilt: float, ratio: float, depth: float, size: float, params: Floats
+) -> Slid:
+    """Return how deep and how far; to the new top where g is nowhere so steep in the contact."""
+    steep = tilt * size / depth
+    if slope >= steep:
+        return depth * (a * steep * steep / slope), 2.0 * a / slope * size / depth * size
+    top = law.top(max(t, 0.0), steep, ratio, params)
+    return depth * steep * top, size * top / tilt
+
+
+def edge_curvature(ratio: float, params: Floats) -> float:
+    """Return k of ``tip_edge``: that of the cap, and of a surface that is curved away."""
+    return max(0.5 * (law.terms(0.0 if law.flat else 1.0, params)[2] + ratio), 0.0)
+
+
+def tipped(load: float, tilt: float, ratio: float, depth: float, size: float, params: Floats) -> Tipped:
+    """Return the contact: it lies as deep as the edge allows, or as the flank does where the whole edge is reached."""
+    k, steep = law.edge_curvature(ratio, params), tilt * size / depth
+    reached = law.loaded_state(whole_edge(steep, k), 1.0, ratio, params)
+    a, da, _, dg, _ = law.terms(reached, params)
+    flank, flank_slide = law.slid(reached, a, dg / da + 2.0 * ratio * a, tilt, ratio, depth, size, params)
+    radius, centre, indentation = held(load, steep, k)
+    level_radius, level_indentation = level(load, k)
+    narrower, turned = 0.0, 1.0
+    if load > 0.0:
+        share = radius / level_radius
+        narrower, turned = 1.0 / radius - 1.0 / level_radius, 3.0 - 2.0 * share * share
+    deeper = depth * (level_indentation - indentation)
+    return max(deeper, flank), max(size * centre / tilt, flank_slide), narrower, turned
+
+
 def load_alone(x: Floats, asperities: Asperities, contacts: Contacts) -> None:
     """Fill state, load, stiffness and radius of contacts that carry their load alone."""
     depth, size, params = asperities.depth, asperities.size, asperities.params
     for i in range(x.size):
-        contacts.state[i] = contacts.load[i] = contacts.stiffness[i] = 0.0
+        contacts.state[i] = contacts.load[i] = contacts.growth[i] = contacts.stiffness[i] = 0.0
         contacts.radius[i] = size[i] if law.pinned else 0.0
         if x[i] > 0.0:
             own = law.params_of(params, i)
@@ -185,7 +244,7 @@ def load_alone(x: Floats, asperities: Asperities, contacts: Contacts) -> None:
             contacts.state[i] = t
             contacts.radius[i] = size[i] * a
             contacts.load[i] = 2.0 / math.pi * size[i] * depth[i] * load
-            contacts.stiffness[i] = 2.0 / math.pi * size[i] * a
+            contacts.growth[i] = contacts.stiffness[i] = 2.0 / math.pi * size[i] * a
 
 
 def respond(asperities: Asperities, field: Floats, contacts: Contacts) -> int:
@@ -224,13 +283,16 @@ def respond(asperities: Asperities, field: Floats, contacts: Contacts) -> int:
                 contacts.radius[i] = size[i] * a
             steep = tilt * size[i] / depth[i]
             if steep > 0.0:
-                if slope >= steep:
-                    slide = 2.0 * a / slope * size[i] / depth[i] * size[i]
-                    lift -= depth[i] * (a * steep * steep / slope)
+                load = 0.5 * math.pi * contacts.load[i] / size[i] / depth[i]
+                if law.edged and load < whole_edge(steep, law.edge_curvature(ratio, own)):
+                    deeper, slide, narrower, turned = law.tipped(load, tilt, ratio, depth[i], size[i], own)
+                    if touching:
+                        a = 1.0 / (1.0 / a + narrower)
+                        contacts.radius[i], contacts.stiffness[i] = size[i] * a, 2.0 / math.pi * size[i] * a
+                        tilting = turned * 4.0 / (3.0 * math.pi) * (size[i] * a) ** 3
                 else:
-                    top = law.top(max(t, 0.0), steep, ratio, own)
-                    slide = size[i] * top / tilt
-                    lift -= depth[i] * steep * top
+                    deeper, slide = law.slid(t, a, slope, tilt, ratio, depth[i], size[i], own)
+                lift -= deeper
         contacts.lift[i], contacts.second_moment[i], contacts.tilting[i], contacts.slide[i] = (
             lift, moment, tilting, slide
         )  # fmt: skip
@@ -243,6 +305,7 @@ def coupled_kernels(kernels: Kernels) -> CoupledKernels:
     whole = CoupledKernels(f"coupled_{kernels.name}")
     vars(whole).update(vars(kernels) | {"__name__": whole.__name__})
     whole.pinned = kernels.name.endswith("flat_punch")
+    whole.edged = isinstance(kernels, ProfileKernels) and (kernels.flat or kernels.corner)
     parts: dict[str, Callable[..., object]]
     if isinstance(kernels, ProfileKernels):
         parts = {
@@ -260,6 +323,7 @@ def coupled_kernels(kernels: Kernels) -> CoupledKernels:
             "bisected_top": top,
             "top": top_of_power,
         }
-    for name, part in (parts | {"load_alone": load_alone, "respond": respond}).items():
+    common = loaded_state, slid, edge_curvature, tipped, load_alone, respond
+    for name, part in (parts | {each.__name__: each for each in common}).items():
         vars(whole)[name] = specialise(part, whole)
     return whole

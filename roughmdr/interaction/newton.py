@@ -150,8 +150,8 @@ def solve(system: System, x: Floats, separation: float, error: float) -> Equilib
     state = evaluate(system, x, separation, None)
     before, largest, taken, last = np.inf, [np.inf], np.ones_like(x), np.zeros_like(x)
     for number in range(_MAX_STEPS):
-        stiffness = state.contacts.stiffness
-        touching = stiffness > 0.0
+        growth = state.contacts.growth
+        touching = growth > 0.0
         if not np.isfinite(state.residual).all():
             break
         if not touching.any() and not (state.residual < 0.0).any():
@@ -162,7 +162,7 @@ def solve(system: System, x: Floats, separation: float, error: float) -> Equilib
         if touching.any():
             potential = system.tangent.potential(change)
             close.add_tangent(state.pairs, values, change, potential)
-            moved = np.where(touching, change / np.where(touching, stiffness, 1.0), -state.residual - potential)
+            moved = np.where(touching, change / np.where(touching, growth, 1.0), -state.residual - potential)
         back = moved * last < 0.0
         taken = np.where(back, taken * np.abs(last) / (np.abs(last) + np.abs(moved)), np.minimum(2.0 * taken, 1.0))
         last = moved
@@ -189,15 +189,15 @@ def total_stiffness(system: System, state: State, separation: float) -> float:
 
     NaN where it is not found.
     """
-    stiffness = state.contacts.stiffness
-    touching = stiffness > 0.0
+    growth = state.contacts.growth
+    touching = growth > 0.0
     if not touching.any():
         return 0.0
     values, right = _tangent(state), np.where(touching, 1.0, 0.0)
     probe = _PROBE * float(state.x.max())
 
     def product(load: Floats) -> Floats:
-        moved = np.where(touching, load.ravel() / np.where(touching, stiffness, 1.0), 0.0)
+        moved = np.where(touching, load.ravel() / np.where(touching, growth, 1.0), 0.0)
         largest = float(np.abs(moved).max())
         if largest == 0.0:
             return np.zeros_like(moved)
