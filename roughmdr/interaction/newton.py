@@ -14,7 +14,7 @@ import numpy as np
 from scipy.sparse.linalg import LinearOperator, cg, gmres
 
 from roughmdr.interaction import close
-from roughmdr.interaction.contacts import Asperities, Contacts, CoupledKernels
+from roughmdr.interaction.interface import Asperities, Contacts, CoupledKernels
 from roughmdr.numerics.arguments import Floats
 
 _MAX_STEPS = 40
@@ -91,9 +91,9 @@ def evaluate(system: System, x: Floats, separation: float, pairs: close.Pairs | 
     kernels, asperities, coupling = system.kernels, system.asperities, system.coupling
     contacts = Contacts(*np.zeros((len(Contacts._fields), x.size)))
     kernels.load_alone(x, asperities, contacts)
-    if pairs is None or pairs.outgrown(contacts.radius):
-        pairs = close.find_pairs(system.at, contacts.radius, system.sides)
-    close.update_shares(pairs, contacts.radius)
+    if pairs is None or pairs.outgrown(contacts.punch):
+        pairs = close.find_pairs(system.at, contacts.punch, system.sides)
+    close.update_shares(pairs, contacts.punch)
     load, lost = contacts.load, 0
     if system.order == 1:
         field = np.zeros((4, x.size))
@@ -109,7 +109,7 @@ def evaluate(system: System, x: Floats, separation: float, pairs: close.Pairs | 
         displacement = field[0] + coupling.of_moments(*moments)
         close.take_from_moments(pairs, *moments, displacement)
     with np.errstate(invalid="ignore", divide="ignore"):
-        excess = np.where(load > 0.0, contacts.second_moment / (load * contacts.radius**2), 0.0)
+        excess = np.where(load > 0.0, contacts.second_moment / (load * contacts.punch**2), 0.0)
     close.add_contacts(pairs, contacts, excess, displacement)
     displacement = displacement + contacts.lift
     residual = x + displacement + (separation - asperities.height)
@@ -140,7 +140,7 @@ def _step(system: System, state: State, values: Floats, right: Floats, rtol: flo
 
 def _tangent(state: State) -> Floats:
     values = np.zeros(state.pairs.share.size)
-    close.tangent(state.pairs, state.contacts.radius, values)
+    close.tangent(state.pairs, state.contacts.punch, values)
     return values
 
 

@@ -12,6 +12,8 @@ The radius of the edge is 1 here, P is over 2 E* and a natural depth.
 
 import math
 
+from roughmdr.interaction.interface import Tipped, law
+from roughmdr.numerics.arguments import Floats
 from roughmdr.numerics.jit import njit
 
 _RTOL, _MAX_ITERATIONS = 1e-15, 60
@@ -35,7 +37,7 @@ def level(load: float, k: float) -> tuple[float, float]:
 
 @njit
 def held(load: float, tilt: float, k: float) -> Held:
-    """Return the contact under a load up to ``whole_edge``; tilt > 0, k >= 0.
+    """Return the contact under a load up to ``whole_edge``; tilt and k >= 0, not both 0.
 
     The load is a^3 (2 tilt - 8/3 k + 4 k a^2) where the edge holds the contact: convex above the least such a, so
     that Newton's method comes down to it from a = 1.
@@ -56,3 +58,28 @@ def held(load: float, tilt: float, k: float) -> Held:
             break
     c = 1.0 - a * a
     return a, c, load / a + 2.0 / 3.0 * k * a * a - c * (tilt - k * c)
+
+
+def edge_curvature(ratio: float, params: Floats) -> float:
+    """Return k, that of the cap and of a surface whose curvature adds ratio a^2 to g; not below 0."""
+    cap = 0.0 if law.pinned or law.flat else law.terms(1.0, params)[2]
+    return max(0.5 * (cap + ratio), 0.0)
+
+
+def tipped(load: float, tilt: float, ratio: float, params: Floats) -> Tipped:
+    """Return the contact under a load below ``whole_edge``, in natural units.
+
+    It slides at least as far as on the flank under that load, without which the flank would hold it at once.
+    """
+    k, deeper, slide = law.edge_curvature(ratio, params), 0.0, 0.0
+    if tilt > 0.0 and not law.pinned:
+        t = law.loaded_state(whole_edge(tilt, k), 1.0, ratio, params)
+        a, da, _, dg, _ = law.terms(t, params)
+        deeper, slide = law.slid(t, a, dg / da + 2.0 * ratio * a, tilt, ratio, 1.0, 1.0, params)
+    radius, centre, indentation = held(load, tilt, k)
+    level_radius, level_indentation = level(load, k)
+    narrower, turned = 0.0, 1.0
+    if load > 0.0:
+        share = radius / level_radius
+        narrower, turned = 1.0 / radius - 1.0 / level_radius, 3.0 - 2.0 * share * share
+    return max(level_indentation - indentation, deeper), max(centre, slide * tilt), narrower, turned

@@ -10,7 +10,8 @@ from scipy.integrate import quad
 from scipy.optimize import brentq
 
 import roughmdr as rm
-from roughmdr.interaction.contacts import Asperities, Contacts, CoupledKernels, coupled_kernels
+from roughmdr.interaction.contacts import coupled_kernels
+from roughmdr.interaction.interface import Asperities, Contacts, CoupledKernels
 from roughmdr.kernels.adhesion import Adhesion
 from roughmdr.kernels.choose import choose
 from roughmdr.kernels.interface import Columns, Material
