@@ -57,12 +57,13 @@ def cubic_integral_of_profile(t: float, params: Floats) -> float:
 
 
 def curved_state(t: float, ratio: float, params: Floats) -> float:
-    """Find the state from that alone on downwards, as load and curvature add up."""
-    load, added = law.terms(t, params)[4], 2.0 / 3.0 * ratio
-    if law.flat:
-        flat = law.terms(0.0, params)[0]
-        if load <= added * flat * flat * flat:
-            return -math.pow(load / added, 1.0 / 3.0) if load > 0.0 else -0.0
+    """Find the state from that alone on downwards, as load and curvature add up; within the edge of a tip at once."""
+    load = law.terms(t, params)[4]
+    if law.edged:
+        within = 4.0 / 3.0 * law.edge_curvature(ratio, params)
+        if load <= within:
+            a = math.pow(load / within, 1.0 / 3.0) if load > 0.0 else 0.0
+            return -a if law.flat else a
     return float(law.loaded_state(load, t, ratio, params))
 
 

@@ -176,6 +176,7 @@ def test_a_surface_curved_away_more_than_the_tip_is_no_disc(name: str) -> None:
 def test_without_load_there_is_no_contact() -> None:
     for shape in EXAMPLES.values():
         found, _ = response(shape, -0.01, 0.3)
+        assert found.pop("punch") == least_radius(shape)
         assert not any(found.values())
 
 
