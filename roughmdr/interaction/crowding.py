@@ -17,8 +17,8 @@ _OVERLAP = 0.45
 """Error by a neighbour over 1 - D/(a + a'), the depth of the overlap."""
 _BURIED = 0.22
 """Error by a buried summit over 1 - r/a, r where its flank comes out."""
-_PARTIAL = 0.65
-"""Error of a tilted flat-ended punch over (1 - a/b)^2, b its radius (``tests/interaction/test_tip_edge.py``)."""
+_PARTIAL = 0.4
+"""Error of a tilted flat-ended punch over (1 - a/b)^(3/2), b its radius (``tests/interaction/test_tip_edge.py``)."""
 _FARTHEST = 2.5
 """Distance over summed radii beyond which neighbours are left out."""
 
@@ -44,7 +44,7 @@ def crowding(
     a, share = radius[on], np.abs(load[on]) / np.sum(np.abs(load[on]))
     total = _BURIED * float(np.sum(share * np.maximum(1.0 - emerging[on] / a, 0.0)))
     if whole is not None:
-        total += _PARTIAL * float(np.sum(share * np.maximum(1.0 - a / whole[on], 0.0) ** 2))
+        total += _PARTIAL * float(np.sum(share * np.maximum(1.0 - a / whole[on], 0.0) ** 1.5))
     touching, power = _NEAR[order]
     for i, j, away in within_reach(at[on], 2.0 * _FARTHEST * a, sides):
         apart = away / (a[i] + a[j])

@@ -4,7 +4,7 @@ The contact is a disc of radius a about a centre that has slid to c. At a load P
 indentation P/(2 E* a) + 2/3 k a^2 - c tilt + k c^2, where k r^2 is the gap of tip and surface alone, but the edge at b
 holds it: c <= (b^2 - a^2)/b. So the edge is in contact all around from P = 2 E* b^2 (2 tilt + 4/3 k b) on, which is
 exact for a disc (its pressure there is that of a tilted punch), and below, on a flat, P = 4 E* tilt a^3/b. The force of
-a tilted flat-ended punch of radius b is then at most 0.08 E* tilt b^2 too large
+a tilted flat-ended punch of radius b is then at most 0.09 E* tilt b^2 too large
 (``tests/interaction/test_tip_edge.py``).
 
 The radius of the edge is 1 here, P is over 2 E* and a natural depth.

@@ -5,9 +5,8 @@ import pytest
 import xarray as xr
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from oracles.free_elements import FreeMap
 from scenes import ensemble
-from scipy.optimize import minimize
+from scipy.optimize import brentq, minimize
 from test_contacts import EXAMPLES, one
 
 import roughmdr as rm
@@ -21,35 +20,26 @@ EDGED: dict[str, Shape] = {
 } | {"flat_punch": rm.FlatPunch(radius=0.06)}
 
 
-def in_reduced_units(force: float, tilt: float, k: float) -> float:
-    """The indentation at which ``held`` carries a force over E* b^2."""
-    return held(0.5 * force, tilt, k)[2]
+BY_ELEMENTS: dict[float, dict[float, float]] = {
+    0.0: {1.5: 3.0205, 1.0: 2.1243, 0.5: 1.3394, 0.0: 0.6944, -0.25: 0.4349, -0.5: 0.2246, -0.75: 0.0727},
+    0.25: {2.0: 3.6771, 1.5: 2.7408, 1.0: 1.8800, 0.5: 1.1221, 0.0: 0.5037, -0.25: 0.2638, -0.5: 0.0862},
+}
+"""Force over E* tilt b^2 of a flat-ended punch, indentation over tilt b; by k over tilt/b: boundary elements
+(``oracles.free_elements``) of 128 and 256 points across, without the error of the grid to first order."""
 
 
-@pytest.mark.parametrize("k", [0.0, 0.25])
+@pytest.mark.parametrize("k", BY_ELEMENTS)
 def test_a_tilted_flat_punch(k: float) -> None:
-    """Boundary elements on a disc of radius 1, tilt 1, from the whole edge in contact to a tenth of the load.
+    """The load is too large, by 0.09 at most, and by 0.7 to 1.2 times 0.4 (1 - a)^(3/2), which is told."""
+    for indentation, force in BY_ELEMENTS[k].items():
 
-    The load is too large by 0.08 at most, and by 0.65 (1 - a)^2, which is told, within a tenth and its grid.
-    """
-    points, cells = 52, 48
-    x = (np.arange(points) - 0.5 * (points - 1)) * 2.0 / cells
-    square = x[:, None] ** 2 + x**2
-    punch = FreeMap(np.where(square <= 1.0, -x[:, None] - k * square, -50.0), 2.0 / cells)
-    force = punch.press(-2.0 - 2.0 * k)
-    assert force == pytest.approx(2.0 * whole_edge(1.0, k), rel=2e-3)
-    for indentation in (1.0, 0.0, -0.5):
-        force = punch.press(-indentation)
-        low, high = 0.5 * force, force
-        for _ in range(50):
-            middle = 0.5 * (low + high)
-            low, high = (middle, high) if in_reduced_units(middle, 1.0, k) < indentation else (low, middle)
-        found = 0.5 * (low + high)
-        print(k, indentation, force, found)
-        assert 0.0 < found - force < 0.085
-        a = held(0.5 * found, 1.0, k)[0]
-        if k == 0.0:
-            assert 1.0 - force / found == pytest.approx(0.65 * (1.0 - a) ** 2, rel=0.1, abs=3e-3)
+        def beyond(load: float, indentation: float = indentation) -> float:
+            return held(load, 1.0, k)[2] - indentation
+
+        load = brentq(beyond, 0.0, whole_edge(1.0, k), rtol=1e-12)
+        error, told = 1.0 - force / (2.0 * load), 0.4 * (1.0 - held(load, 1.0, k)[0]) ** 1.5
+        assert 0.0 < 2.0 * load * error < 0.09
+        assert 0.7 * told < error < 1.2 * told
 
 
 @settings(deadline=None, max_examples=50)
@@ -71,6 +61,9 @@ def test_the_edge_holds_the_contact_of_least_indentation(share: float, tilt: flo
     assert indentation == pytest.approx(of(np.array([a, c])), abs=1e-12 * scale)
     assert c <= 1.0 - a * a + 1e-12
     assert indentation == pytest.approx(best.fun, abs=1e-5 * scale)
+    nearer, farther = (held(load * (1.0 + step), tilt, k)[2] for step in (-1e-5, 1e-5))
+    if share < 0.99:
+        assert (farther - nearer) / (2e-5 * load) == pytest.approx(1.0 / a, rel=1e-4)
 
 
 def test_the_whole_edge_is_that_of_a_contact_that_stays() -> None:
@@ -103,7 +96,6 @@ def test_contacts_change_without_a_jump(name: str, curvature: float, tilt: float
         x = np.linspace(-0.05, 0.4, count) ** 3
         found = along(shape, x, curvature, tilt)
         depth = x + found["lift"]
-        on = x > 0.0
         assert (np.diff(depth) > 0.0).all()
         jumps.append(
             [
@@ -112,10 +104,6 @@ def test_contacts_change_without_a_jump(name: str, curvature: float, tilt: float
             ]
         )
     assert (np.array(jumps[1]) <= 0.2 * np.array(jumps[0]) + 1e-15).all()
-    middle = 0.5 * (found["stiffness"][on][1:] + found["stiffness"][on][:-1])
-    slope = np.diff(found["load"][on]) / np.diff(depth[on])
-    if tilt < 1.0 and name != "capped_paraboloid":
-        print(name, curvature, tilt, np.abs(middle / slope - 1.0).max())
 
 
 def three(**changes: object) -> xr.Dataset:
@@ -138,6 +126,5 @@ def test_a_contact_on_a_part_of_its_flat(lowest: float, separation: float, force
     )  # fmt: skip
     assert float(found.numerical_error) <= 1e-6
     off = abs(float(found.force[0]) / (1e-3 * force) - 1.0)
-    print(lowest, off, float(found.model_error_curve[0]), float(found.marked_steps))
     assert off < 6e-4
     assert off < float(found.model_error_curve[0])
