@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from roughmdr.numerics.arguments import Floats
 
 _PAIRS_AT_A_TIME = 2.0**22
+_BEYOND_ALL = 1.01  # times the diagonal of all points: two of them lie on it, but for rounding
 
 
 def within_reach(
@@ -27,7 +28,7 @@ def within_reach(
     whole = cKDTree(wrapped, boxsize=sides)
     extent = np.ptp(at, axis=0) if sides is None else sides
     density = at.shape[0] / max(float(extent[0] * extent[1]), float(np.finfo(np.float64).tiny))
-    farthest = float(np.hypot(*extent))
+    farthest = _BEYOND_ALL * float(np.hypot(*extent))
     size = np.ceil(np.log2(reach[reaching]))
     for each in np.unique(size):
         members, far = reaching[size == each], float(min(2.0**each, farthest))

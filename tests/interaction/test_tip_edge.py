@@ -128,3 +128,32 @@ def test_a_contact_on_a_part_of_its_flat(lowest: float, separation: float, force
     off = abs(float(found.force[0]) / (1e-3 * force) - 1.0)
     assert off < 6e-4
     assert off < float(found.model_error_curve[0])
+
+
+@pytest.mark.parametrize("name", EDGED)
+def test_ensembles_come_to_rest_at_each_step(name: str) -> None:
+    """Up to a third of the patch in contact, in other units too; the load grows with each step."""
+    boundary = ["free", "periodic"]
+    for seed in range(6):
+        rng = np.random.default_rng([seed, len(name)])
+        unit, count = 10.0 ** rng.uniform(-9.0, 0.0), int(rng.integers(4, 16))
+        numbers = {"flat_radius": 1.0, "slope": 0.05, "radius": 20.0, "edge_radius": 20.0, "cap_radius": 60.0}
+        numbers |= {"blend_radius": 1.0} if name == "capped_paraboloid" else {}
+        numbers |= {"radius": 1.0} if name == "flat_punch" else {}
+        given = {key: unit * value for key, value in numbers.items() if key in EDGED[name].parameters}
+        given |= {"slope": 0.05} if name == "truncated_cone" else {}
+        side = 7.0 * count**0.5
+        cells = rng.permutation(int(count**0.5 + 1.0) ** 2)[:count]
+        x, y = (np.array(np.divmod(cells, int(count**0.5 + 1.0))) + rng.uniform(0.0, 0.6, (2, count))) * side
+        z = unit * rng.normal(0.0, 0.04, count)
+        across = int(count**0.5 + 1.0)
+        made = ensemble(
+            z, (unit * side) ** 2, name, x=unit * x / across, y=unit * y / across, **given
+        )  # fmt: skip
+        down = float(z.max()) - unit * np.linspace(2e-3, 0.1, 12)
+        law = rm.load_separation(
+            made, separation=down, effective_modulus=3e6, variables=["force"],
+            interaction={"model": "pairwise", "boundary": boundary[seed % 2]},
+        )  # fmt: skip
+        assert (np.diff(law.force.values) > 0.0).all()
+        assert float(law.numerical_error) <= 1e-6
