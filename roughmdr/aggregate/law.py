@@ -113,8 +113,9 @@ def effective_number(force: Floats) -> float:
     largest = float(sizes.max(initial=0.0))
     if largest == 0.0:
         return math.nan
-    shares = sizes / largest
-    return float(np.square(shares.sum()) / np.square(shares).sum())
+    sizes /= largest
+    total = float(sizes.sum())
+    return total * total / float(np.square(sizes, out=sizes).sum())
 
 
 def _over_area(name: str, total: Floats, area: float) -> Floats:

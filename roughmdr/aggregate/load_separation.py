@@ -141,7 +141,8 @@ def load_separation(
     if "conductance_radius" in names:
         errors["conductance_error"] = result.conductance_error
     data |= {name: Array((), np.array(value), RUN_VARIABLES[name].attrs) for name, value in errors.items()}
-    if "unloading" in path.branch().values:
+    coordinates = path.coordinates()
+    if "unloading" in coordinates["branch"].values:
         for variable, number in zip(PULL_OFF_NUMBERS.values(), result.pull_off, strict=True):
             data[variable.name] = Array((), np.array(number), variable.attrs)
     warnings = [*result.warnings, *result.extremes.warnings]
@@ -152,4 +153,4 @@ def load_separation(
         warnings += fraction_warnings(fraction)
     attrs = warn_limits(warnings) | ({"adhesion": result.model} if asked.model == "auto" else {})
     attrs |= {} if coupling is None else {"interaction": coupling.model}
-    return Labelled(data, path.coordinates(), attrs).to_xarray()
+    return Labelled(data, coordinates, attrs).to_xarray()

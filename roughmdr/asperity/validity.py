@@ -28,8 +28,11 @@ _UPRIGHT = float(np.finfo(np.float64).max)  # slope of a vertical flank
 
 def relative_loads(radius: Floats, slopes: Floats) -> Floats:
     """Return a^2 f'(a) [1] of contact radii [m] and the slopes there, which is about proportional to their forces."""
+    loads = np.minimum(slopes, _VERTICAL)
+    loads[np.isnan(loads)] = 0.0
     relative = radius / np.max(radius)
-    return np.asarray(relative * relative * np.minimum(np.nan_to_num(slopes, posinf=_VERTICAL), _VERTICAL))
+    loads *= np.square(relative, out=relative)
+    return loads
 
 
 class ValidityLimits(NamedTuple):
@@ -53,13 +56,11 @@ class ValidityLimits(NamedTuple):
             steepest = np.where((radius > 0.0) & ~np.isnan(slopes), slopes, 0.0)
             farthest = np.where(np.isfinite(radius), radius / ends, 0.0)
             loads = relative_loads(radius, steepest)
-            errors = np.minimum(steepest * steepest / _SLOPE_DIVISOR, 1.0)
-            total = float(np.sum(loads))
-            shares = loads / total if total > 0.0 else np.zeros_like(loads)
-        slope, extent = min(float(np.max(steepest)), _UPRIGHT), min(float(np.max(farthest)), _UPRIGHT)
-        return cls(
-            slope, extent, slope_error=float(np.sum(shares * errors)), end_error=float(np.sum(shares[farthest > 1.0]))
-        )
+            slope, extent = min(float(np.max(steepest)), _UPRIGHT), min(float(np.max(farthest)), _UPRIGHT)
+            total = float(np.sum(loads)) or 1.0
+            beyond = float(np.sum(loads[farthest > 1.0])) if extent > 1.0 else 0.0
+            loads *= np.minimum(np.square(steepest, out=steepest) / _SLOPE_DIVISOR, 1.0)
+        return cls(slope, extent, slope_error=float(np.sum(loads)) / total, end_error=beyond / total)
 
     @property
     def warnings(self) -> list[str]:

@@ -126,7 +126,7 @@ class Ensemble:
     def relative_loads(self, radius: Floats) -> Floats:
         """Return about the forces of contacts with these radii [m], 0 for none, in some unit."""
         loads = relative_loads(radius, self._slopes(radius))
-        return loads if loads.any() else radius  # of flat punches, whose flanks are no slopes
+        return loads if loads.any() else radius  # flat punches have flanks without slopes
 
     def _slopes(self, radius: Floats) -> Floats:
         """Return f' at radii [m]."""

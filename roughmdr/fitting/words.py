@@ -7,7 +7,7 @@ from roughmdr.schema.units import format_quantity
 from roughmdr.schema.wording import format_seconds, format_table
 from roughmdr.storage.labelled import Labelled
 
-_DIGITS = 4, 12  # of a fitted number: least and most
+_DIGITS = 4, 12  # least and most digits of a fitted number
 
 
 def describe_fit(fit: Labelled) -> str:

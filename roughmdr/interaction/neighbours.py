@@ -10,6 +10,7 @@ from roughmdr.numerics.arguments import Floats
 
 _PAIRS_AT_A_TIME = 2.0**22
 _BEYOND_ALL = 1.01  # times the diagonal of all points: two of them lie on it, but for rounding
+_AT_ONCE = 2.0**12  # pairs so few that one class is found sooner than several
 
 
 def within_reach(
@@ -27,13 +28,18 @@ def within_reach(
     wrapped = at if sides is None else np.clip(at - sides * np.floor(at / sides), 0.0, np.nextafter(sides, 0.0))
     whole = cKDTree(wrapped, boxsize=sides)
     extent = np.ptp(at, axis=0) if sides is None else sides
-    density = at.shape[0] / max(float(extent[0] * extent[1]), float(np.finfo(np.float64).tiny))
+    density = len(at) / max(float(extent[0] * extent[1]), float(np.finfo(np.float64).tiny))
     farthest = _BEYOND_ALL * float(np.hypot(*extent))
+
+    def expected(far: float) -> float:
+        return min(density * math.pi * far * far, len(at)) + 1.0
+
     size = np.ceil(np.log2(reach[reaching]))
+    if reaching.size * expected(float(2.0 ** size.max())) < _AT_ONCE:
+        size[:] = size.max()
     for each in np.unique(size):
         members, far = reaching[size == each], float(min(2.0**each, farthest))
-        expected = min(density * math.pi * far * far, at.shape[0]) + 1.0
-        parts = np.array_split(members, math.ceil(members.size * expected / _PAIRS_AT_A_TIME))
+        parts = np.array_split(members, math.ceil(members.size * expected(far) / _PAIRS_AT_A_TIME))
         for part in parts:
             near = cKDTree(wrapped[part], boxsize=sides).sparse_distance_matrix(whole, far, output_type="ndarray")
             i, j = part[near["i"]], near["j"]

@@ -14,7 +14,7 @@ from roughmdr.numerics.underway import steps_done
 
 _SECONDS_BETWEEN_LINES = 10.0
 _SECONDS_OF_A_RUN = 3.0  # without one that is done, after which the bar shows their steps
-_MAX_SHOWN = 4  # of the runs that are under way
+_MAX_SHOWN = 4  # runs under way that are named
 
 
 class Progress:

@@ -52,12 +52,7 @@ def check_poisson(name: str, value: float) -> float:
 
 def check_values(name: str, raw: ArrayLike, dimension: str) -> Floats:
     """Return a number or a one-dimensional array of numbers in SI; OutOfRange unless all are finite."""
-    try:
-        values = np.asarray(texts_in_si(name, raw, dimension), dtype=np.float64)
-    except (TypeError, ValueError, OverflowError) as error:
-        if isinstance(error, OutOfRange):
-            raise
-        raise OutOfRange(f"{name} is {raw!r}; it must be a number or a one-dimensional array") from None
+    values = floats_in_si(name, raw, dimension, "a number or a one-dimensional array")
     if values.ndim > 1:
         raise OutOfRange(f"{name} has {values.ndim} dimensions; it must be a number or a one-dimensional array")
     undefined = ~np.isfinite(np.atleast_1d(values))
@@ -83,12 +78,19 @@ def exactly_one(owner: str, **choices: Any) -> tuple[str, Any]:
     return given.popitem()
 
 
-def texts_in_si(name: str, raw: ArrayLike, dimension: str) -> ArrayLike:
-    """Return numbers as they are given, strings with units as numbers in SI; OutOfRange where one cannot be read."""
-    given = np.asarray(raw)
-    if given.dtype.kind != "U":
-        return given
-    return np.reshape([_from_text(name, str(text), dimension) for text in given.flat], given.shape)
+def floats_in_si(name: str, raw: ArrayLike, dimension: str, allowed: str) -> Floats:
+    """Return a new array of numbers, given as such or as strings with units; OutOfRange, unless all can be read, says
+    that they must be what is ``allowed``.
+    """
+    try:
+        given = np.array(raw)
+        if given.dtype.kind != "U":
+            return given.astype(np.float64)
+        return np.reshape([_from_text(name, str(text), dimension) for text in given.flat], given.shape)
+    except OutOfRange:
+        raise
+    except (TypeError, ValueError, OverflowError):
+        raise OutOfRange(f"{name} is {raw!r}; it must be {allowed}") from None
 
 
 def _from_text(name: str, text: str, dimension: str) -> float:

@@ -5,8 +5,11 @@ from collections.abc import Mapping
 from typing import Any, ClassVar, Self
 
 import numpy as np
+from numpy.typing import ArrayLike
 
+from roughmdr.errors import OutOfRange, ShapeError
 from roughmdr.numerics.arguments import Floats
+from roughmdr.schema.arguments import floats_in_si
 from roughmdr.shapes.base import ProfileShape
 
 
@@ -38,7 +41,7 @@ class SharedProfile(ArrayShape):
     """A shape whose parameters are arrays, so that all asperities of an ensemble share one profile."""
 
     shared = True
-    dimension: ClassVar[str]  # of these arrays in the Dataset of an ensemble
+    dimension: ClassVar[str]  # the one of its arrays in the Dataset of an ensemble
 
     @property
     def columns(self) -> dict[str, Floats]:
@@ -65,4 +68,19 @@ class TabledShape(ArrayShape):
     Parameters of asperities are arrays [asperity, point], and params a row each.
     """
 
-    dimension: ClassVar[str]  # of these arrays in the Dataset of an ensemble, beside ``asperity``
+    dimension: ClassVar[str]  # the one of its arrays in the Dataset of an ensemble, beside ``asperity``
+
+
+def lengths_in_a_row(owner: str, name: str, values: ArrayLike, fewest: int) -> Floats:
+    """Return ``values`` in metres as read-only floats; ShapeError unless finite and a row of so many at least."""
+    try:
+        row = floats_in_si(name, values, "m", "a list of numbers")
+    except OutOfRange as error:
+        raise ShapeError(f"{owner}: {error}") from None
+    if row.ndim != 1 or row.size < fewest:
+        raise ShapeError(f"{owner}: {name} has the shape {row.shape}; it must be a row of at least {fewest}")
+    if not np.isfinite(row).all():
+        where = int(np.argmin(np.isfinite(row)))
+        raise ShapeError(f"{owner}: {name}[{where}] is {row[where]}; it must be finite")
+    row.setflags(write=False)
+    return row

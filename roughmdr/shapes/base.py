@@ -15,7 +15,7 @@ from roughmdr.errors import OutOfRange, RoughmdrError, ShapeError
 from roughmdr.numerics import vector_math
 from roughmdr.numerics.arguments import Floats
 from roughmdr.numerics.rebind import rebuilt
-from roughmdr.schema.arguments import texts_in_si
+from roughmdr.schema.arguments import floats_in_si
 from roughmdr.schema.keywords import check_keywords
 from roughmdr.schema.units import quantity
 from roughmdr.schema.wording import short_repr
@@ -247,12 +247,7 @@ class ProfileShape(Shape):
 
 def check_radii(name: str, values: ArrayLike, limit: float = math.inf) -> Floats:
     """Return ``values``, numbers or strings with units, in metres; OutOfRange unless all are from 0 to ``limit``."""
-    try:
-        numbers = np.asarray(texts_in_si(name, values, "m"), dtype=np.float64)
-    except (TypeError, ValueError, OverflowError) as error:
-        if isinstance(error, OutOfRange):
-            raise
-        raise OutOfRange(f"{name} is {values!r}; it must be numbers, finite and at least 0") from None
+    numbers = floats_in_si(name, values, "m", "numbers, finite and at least 0")
     wrong = ~(np.isfinite(numbers) & (numbers >= 0.0) & (numbers <= limit))
     if wrong.any():
         above = "" if math.isinf(limit) else f" and at most {limit:g} m"

@@ -49,6 +49,10 @@ class Paraboloid(_Power):
         radius = parameters["radius"]
         return radius, 0.5 * radius, np.full_like(radius, 2.0)
 
+    @classmethod
+    def slopes(cls, columns: tuple[Any, Any, Any], r: Floats) -> Floats:
+        return np.asarray(r / columns[0])  # to the bit as that of power laws, and much sooner
+
 
 @dataclass(frozen=True)
 class Cone(_Power):

@@ -217,7 +217,7 @@ def test_coupled_tables_of_paraboloids_are_coupled_paraboloids(work: float) -> N
     ("a", "g", "says"),
     [
         ([1.0, 2.0], [1.0], "a holds 2 numbers and g 1"),
-        ([], [], "it must hold numbers in a row"),
+        ([], [], r"a has the shape \(0,\); it must be a row of at least 1"),
         ([1.0, math.nan], [1.0, 2.0], r"a\[1\] is nan; it must be finite"),
         ([0.0, 1.0], [1.0, 2.0], r"a\[0\] is 0 m; a must rise"),
         ([1.0, 2.0], [2.0, 2.0], r"g\[1\] is 2 m after 2 m; g must rise"),

@@ -143,6 +143,24 @@ def test_a_bad_parameter_is_refused_by_name_and_value(make: object, name: str, v
 
 
 @pytest.mark.parametrize(
+    ("r", "f", "says"),
+    [
+        (["0 um", "x", "2 um"], [0.0, 1e-6, 2e-6], "tabulated: r is 'x': expected a number in m"),
+        ([0.0, {}, 2e-6], [0.0, 1e-6, 2e-6], "tabulated: r is .*; it must be a list of numbers"),
+        ([0.0, 1e-6], [0.0, 1e-6], r"tabulated: r has the shape \(2,\); it must be a row of at least 3"),
+        ([0.0, 1e-6, 2e-6], [0.0, np.nan, 1e-6], r"tabulated: f\[1\] is nan; it must be finite"),
+        ([0.0, 1e-6, 2e-6], [1e-9, 1e-8, 1e-6], r"tabulated: f\[0\] is 1e-09 m; the table must begin at the tip"),
+        ([0.0, 1e-6, 2e-6, 3e-6], [0.0, 1e-6, 2e-6], "tabulated: r holds 4 numbers and f 3"),
+        ([0.0, 2e-6, 1e-6], [0.0, 1e-9, 1e-6], r"r\[2\] is 1e-06 m after 2e-06 m; r must rise"),
+        ([0.0, 1e-6, 2e-6], [0.0, 1e-6, 1e-9], r"f\[2\] is 1e-09 m after 1e-06 m; f must not fall"),
+    ],
+)
+def test_a_table_that_is_no_profile_is_refused_by_what_is_wrong(r: object, f: object, says: str) -> None:
+    with pytest.raises(rm.ShapeError, match=says):
+        rm.Tabulated(r, f)
+
+
+@pytest.mark.parametrize(
     "given",
     [
         {"exponent": 2.0},

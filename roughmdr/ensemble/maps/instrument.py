@@ -26,7 +26,7 @@ def read_with_header(text: str, channel: str | None) -> RawMap:
 
 
 def _open(source: Any, known_format: str | None, channel: str | None, kind: str) -> RawMap:
-    with warnings.catch_warnings(action="ignore"):  # of other contents of the file, or packages that are not installed
+    with warnings.catch_warnings(action="ignore"):  # about other contents, or packages not installed
         try:
             from SurfaceTopography.IO import open_topography
         except ImportError:

@@ -12,7 +12,7 @@ from roughmdr.numerics.arguments import Floats
 _DELIMITERS = (";", "\t", ",")
 _UNDEFINED = ("", "na", "n/a", "null", "none", "bad", "-", "--", "---", "*")  # words for no height, beside nan and inf
 _DECIMAL_COMMA = re.compile(r"[-+]?\d*,\d+(?:e[-+]?\d+)?|[-+]?\d+", re.IGNORECASE)
-_BYTE_ORDER_MARKS = (b"\xff\xfe", b"\xfe\xff")  # of UTF-16
+_BYTE_ORDER_MARKS = (b"\xff\xfe", b"\xfe\xff")  # the two of UTF-16
 _CONTROL = re.compile(r"[\x00-\x08\x0e-\x1b]")  # characters that binary files have, and texts do not
 
 

@@ -15,7 +15,7 @@ from roughmdr.report.export.document import Column, Document
 from roughmdr.schema.wording import escape_controls
 from roughmdr.storage.result_file import EXPORT_MARK
 
-_WIDTH = 108  # of a line of the header; CalculiX and Abaqus read more
+_WIDTH = 108  # characters of a line of the header; CalculiX and Abaqus read more
 _MOOSE_WIDTH = 116  # letters of a line of numbers
 _NAMES = {"pressure": "PRES", "thermal_conductance": "TCC", "electrical_conductance": "ECC"}  # real constants of Ansys
 _OPTIONS = {
@@ -26,7 +26,7 @@ _OPTIONS = {
     },
     "calculix": {
         "pressure": "*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=TABULAR",
-        "thermal_conductance": "*GAP CONDUCTANCE",  # over the pressure, without a word for it
+        "thermal_conductance": "*GAP CONDUCTANCE",  # its argument is the pressure, without a word for it
     },
 }
 

@@ -6,10 +6,9 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike
 
-from roughmdr.errors import OutOfRange, ShapeError
+from roughmdr.errors import ShapeError
 from roughmdr.numerics.arguments import Floats
-from roughmdr.schema.arguments import texts_in_si
-from roughmdr.shapes.array_shapes import TabledShape
+from roughmdr.shapes.array_shapes import TabledShape, lengths_in_a_row
 from roughmdr.shapes.mdr_table import lookup, rows
 
 _MIN_STEP = 1e-6  # of the last radius, and of the last g: nearer points leave no digits to the slope between them
@@ -36,7 +35,7 @@ class MdrTable(TabledShape):
     profile = lookup.PROFILE
 
     def __init__(self, a: ArrayLike, g: ArrayLike) -> None:
-        self.radii, self.indentations = _row("a", a), _row("g", g)
+        self.radii, self.indentations = lengths_in_a_row(self.name, "a", a, 1), lengths_in_a_row(self.name, "g", g, 1)
         if self.radii.size != self.indentations.size:
             raise ShapeError(
                 f"mdr_table: a holds {self.radii.size} numbers and g {self.indentations.size}; "
@@ -123,20 +122,3 @@ def rising(g: Floats) -> Floats:
     """Return g [table, point] with the least rise from point to point that a table may have where it rises less."""
     steps = np.diff(g, axis=1, prepend=0.0)
     return np.asarray(np.cumsum(np.maximum(steps, 2.0 * _MIN_STEP * np.abs(g).max(axis=1, keepdims=True)), axis=1))
-
-
-def _row(name: str, values: ArrayLike) -> Floats:
-    """Return ``values`` as read-only floats; ShapeError unless they are finite numbers in a row."""
-    try:
-        row = np.array(texts_in_si(name, values, "m"), dtype=np.float64)
-    except (TypeError, ValueError, OverflowError) as error:
-        if isinstance(error, OutOfRange):
-            raise ShapeError(f"mdr_table: {error}") from None
-        raise ShapeError(f"mdr_table: {name} is {values!r}; it must be a list of numbers") from None
-    if row.ndim != 1 or row.size == 0:
-        raise ShapeError(f"mdr_table: {name} has the shape {row.shape}; it must hold numbers in a row")
-    if not np.isfinite(row).all():
-        where = int(np.argmin(np.isfinite(row)))
-        raise ShapeError(f"mdr_table: {name}[{where}] is {row[where]}; it must be finite")
-    row.setflags(write=False)
-    return row

@@ -10,8 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from roughmdr.errors import OutOfRange, ShapeError
 from roughmdr.numerics.arguments import Floats
-from roughmdr.schema.arguments import texts_in_si
-from roughmdr.shapes.array_shapes import SharedProfile
+from roughmdr.shapes.array_shapes import SharedProfile, lengths_in_a_row
 from roughmdr.shapes.base import check_radii
 from roughmdr.shapes.tabulated import lookup
 
@@ -37,7 +36,8 @@ class Tabulated(SharedProfile):
     profile = lookup.PROFILE
 
     def __init__(self, r: ArrayLike, f: ArrayLike) -> None:
-        self.radii, self.heights = _column("r", r), _column("f", f)
+        self.radii = lengths_in_a_row(self.name, "r", r, _MIN_POINTS)
+        self.heights = lengths_in_a_row(self.name, "f", f, _MIN_POINTS)
         _check(self.radii, self.heights)
         self.knot_slopes = _monotone_slopes(self.radii, self.heights)
         self._check_disc()
@@ -152,27 +152,11 @@ def _sine_integral(power: int, angle: Any) -> Any:
     return ((power - 1) * _sine_integral(power - 2, angle) - cosine * sine ** (power - 1)) / power
 
 
-def _column(name: str, values: ArrayLike) -> Floats:
-    """Return ``values`` as read-only floats; ShapeError unless they are finite and begin with 0."""
-    try:
-        column = np.array(texts_in_si(name, values, "m"), dtype=np.float64)
-    except (TypeError, ValueError, OverflowError) as error:
-        if isinstance(error, OutOfRange):
-            raise ShapeError(f"tabulated: {error}") from None
-        raise ShapeError(f"tabulated: {name} is {values!r}; it must be a list of numbers") from None
-    if column.ndim != 1 or column.size < _MIN_POINTS:
-        raise ShapeError(f"tabulated: {name} has the shape {column.shape}; it must hold at least 3 numbers in a row")
-    if not np.isfinite(column).all():
-        where = int(np.argmin(np.isfinite(column)))
-        raise ShapeError(f"tabulated: {name}[{where}] is {column[where]}; it must be finite")
-    if column[0] != 0.0:
-        raise ShapeError(f"tabulated: {name}[0] is {column[0]:g} m; the table must begin at the tip, with 0")
-    column.setflags(write=False)
-    return column
-
-
 def _check(r: Floats, f: Floats) -> None:
     """Raise ShapeError where r and f are no profile."""
+    for name, column in (("r", r), ("f", f)):
+        if column[0] != 0.0:
+            raise ShapeError(f"tabulated: {name}[0] is {column[0]:g} m; the table must begin at the tip, with 0")
     if r.size != f.size:
         raise ShapeError(f"tabulated: r holds {r.size} numbers and f {f.size}; they must be equally many")
     for name, column, falls, must in (
