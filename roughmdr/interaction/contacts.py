@@ -6,7 +6,7 @@ to its order:
 - curvature r^2 adds to the profile, so 2 curvature x^2 to g;
 - a tilt moves the contact to the new top, where it is deeper by a tilt^2/g'(a), and its pressure with it: the moment
   about the old axis is K tilt, K = 4/3 E* a^3, whatever the profile. Where tilt > g'(a), the top is the radius at which
-  tilt = g';
+  tilt = g'. The edge of a tip limits that (``tip_edge.py``);
 - the pressure of the contact is felt by others as its load, its second moment M = ∫ p r^2 dA, and that moment.
 """
 

@@ -48,14 +48,12 @@ class Contacts(NamedTuple):
     """How far the contact moves for a tilt of 1: 2 a/g'(a), but no farther than to the new top."""
 
 
-Slid = tuple[float, float]
-"""How much deeper a contact lies that has slid, and its ``slide``."""
 Terms = tuple[float, float, float, float, float]
 """a, da/dt, g, dg/dt and ∫ x g' dx over the natural size and depth."""
-
-
+Slid = tuple[float, float]
+"""How much deeper a contact lies that has slid, and its ``slide``."""
 Tipped = tuple[float, float, float, float]
-"""How much deeper it lies, how far it has slid, what is to be added to 1/a, and K over 4/3 a^3."""
+"""How much deeper a contact lies, how far it has slid, what is to be added to 1/a, and K over 4/3 a^3."""
 
 
 class CoupledKernels(Kernels):

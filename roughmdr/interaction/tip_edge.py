@@ -39,8 +39,8 @@ def level(load: float, k: float) -> tuple[float, float]:
 def held(load: float, tilt: float, k: float) -> Held:
     """Return the contact under a load up to ``whole_edge``; tilt and k >= 0, not both 0.
 
-    The load is a^3 (2 tilt - 8/3 k + 4 k a^2) where the edge holds the contact: convex above the least such a, so
-    that Newton's method comes down to it from a = 1.
+    The load is a^3 (2 tilt - 8/3 k + 4 k a^2) where the edge holds the contact: convex from the least such a on, so
+    that Newton's method comes down to it from a larger one.
     """
     if 0.5 * tilt < k:
         free = 1.0 - 0.5 * tilt / k
@@ -49,7 +49,8 @@ def held(load: float, tilt: float, k: float) -> Held:
             return a, 0.5 * tilt / k, indentation - 0.25 * tilt * tilt / k
     if load <= 0.0:
         return 0.0, 1.0, k - tilt
-    a, first, third = 1.0, 2.0 * tilt - 8.0 / 3.0 * k, 4.0 * k
+    first, third = 2.0 * tilt - 8.0 / 3.0 * k, 4.0 * k
+    a = math.pow(load / first, 1.0 / 3.0) if load < first else 1.0
     for _ in range(_MAX_ITERATIONS):
         square = a * a
         step = (a * square * (first + third * square) - load) / (square * (3.0 * first + 5.0 * third * square))
