@@ -16,8 +16,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from roughmdr.interaction.contacts import Contacts
 from roughmdr.interaction.green import point_load
+from roughmdr.interaction.interface import Contacts
 from roughmdr.interaction.neighbours import within_reach
 from roughmdr.numerics.arguments import Floats
 from roughmdr.numerics.gauss import unit_gauss
@@ -133,7 +133,7 @@ def take_from_moments(pairs: Pairs, laplacian: Floats, along_x: Floats, along_y:
 @njit
 def add_contacts(pairs: Pairs, contacts: Contacts, excess: Floats, potential: Floats) -> None:
     """Add what the contacts of close pairs do to each other; ``excess`` is M/(P a^2) of each as it is alone."""
-    radius, load = contacts.radius, contacts.load
+    radius, load = contacts.punch, contacts.load
     for number in range(pairs.share.size):
         share = pairs.share[number]
         if share > 0.0:

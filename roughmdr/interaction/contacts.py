@@ -6,17 +6,15 @@ to its order:
 - curvature r^2 adds to the profile, so 2 curvature x^2 to g;
 - a tilt moves the contact to the new top, where it is deeper by a tilt^2/g'(a), and its pressure with it: the moment
   about the old axis is K tilt, K = 4/3 E* a^3, whatever the profile. Where tilt > g'(a), the top is the radius at which
-  tilt = g';
+  tilt = g'. The edge of a tip limits that (``tip_edge.py``);
 - the pressure of the contact is felt by others as its load, its second moment M = ∫ p r^2 dA, and that moment.
-
-Lengths are over the side L of the patch, loads over pi E* L^2. The unknown of a contact is x, the indentation at which
-it would carry its load alone; below 0 the distance to first touch.
 """
 
 import math
 from collections.abc import Callable
-from typing import NamedTuple
 
+from roughmdr.interaction.interface import Asperities, Contacts, CoupledKernels, Slid, Terms, law
+from roughmdr.interaction.tip_edge import edge_curvature, tipped, whole_edge
 from roughmdr.kernels.interface import Kernels
 from roughmdr.kernels.profile.interface import ProfileKernels
 from roughmdr.numerics.arguments import Floats
@@ -26,69 +24,6 @@ from roughmdr.numerics.jit import once, specialise
 _NODES, _WEIGHTS = unit_gauss(20)
 _RTOL, _MAX_ITERATIONS = 1e-14, 100
 _DOUBLINGS, _BISECTIONS = 60, 60
-
-
-class Asperities(NamedTuple):
-    """Asperities in units of the patch."""
-
-    height: Floats
-    """Summit heights."""
-    depth: Floats
-    """Natural depths."""
-    size: Floats
-    """Natural radii."""
-    params: Floats
-    """As ``Kernels.prepare`` returns them."""
-
-
-class Contacts(NamedTuple):
-    """Contacts at a state x, one number for each asperity."""
-
-    state: Floats
-    """The state t of its kernels."""
-    load: Floats
-    stiffness: Floats
-    """Slope of the load over x."""
-    radius: Floats
-    """Of the contact; that of a flat punch, which is its own, also out of contact."""
-    lift: Floats
-    """By how much its indentation exceeds x."""
-    second_moment: Floats
-    """M."""
-    tilting: Floats
-    """K, the moment of the pressure for a tilt of 1."""
-    slide: Floats
-    """How far the contact moves for a tilt of 1: 2 a/g'(a), but no farther than to the new top."""
-
-
-Terms = tuple[float, float, float, float, float]
-"""a, da/dt, g, dg/dt and ∫ x g' dx over the natural size and depth."""
-
-
-class CoupledKernels(Kernels):
-    """Kernels of a shape without adhesion, with those that a displaced surface needs."""
-
-    pinned = False
-    flat = False
-    terms: Callable[..., Terms]
-    """(t, params) -> the terms at a state."""
-    cubic_integral: Callable[..., float]
-    """(t, params) -> ∫ x^3 g' dx to a, over natural size^3 and depth."""
-    curved_state: Callable[..., float]
-    """(t, ratio, params) -> the state with the load of t on a surface whose curvature adds ratio a^2 to g; negative,
-    minus the radius, where the contact lies within the flat of a tip."""
-    newton_state: Callable[..., float]
-    """As ``curved_state``, by iteration, where that has a closed form for some."""
-    top: Callable[..., float]
-    """(t, tilt, ratio, params) -> the radius from t on where dg/da is the tilt, over natural size."""
-    bisected_top: Callable[..., float]
-    """As ``top``, by bisection."""
-    load_alone: Callable[..., None]
-    respond: Callable[..., int]
-
-
-law = CoupledKernels("law")
-"""Stands for the kernels in parts that ``specialise`` is given."""
 
 
 def terms_of_power(t: float, n: float) -> Terms:
@@ -122,12 +57,21 @@ def cubic_integral_of_profile(t: float, params: Floats) -> float:
 
 
 def curved_state(t: float, ratio: float, params: Floats) -> float:
-    """Find the state by Newton's method: from t on downwards, as load and curvature add up."""
-    load, added = law.terms(t, params)[4], 2.0 / 3.0 * ratio
-    if law.flat:
-        flat = law.terms(0.0, params)[0]
-        if load <= added * flat * flat * flat:
-            return -math.pow(load / added, 1.0 / 3.0) if load > 0.0 else -0.0
+    """Find the state from that alone on downwards, as load and curvature add up; within the edge of a tip at once."""
+    load = law.terms(t, params)[4]
+    if law.edged:
+        within = 4.0 / 3.0 * law.edge_curvature(ratio, params)
+        if load <= within:
+            a = math.pow(load / within, 1.0 / 3.0) if load > 0.0 else 0.0
+            return -a if law.flat else a
+    return float(law.loaded_state(load, t, ratio, params))
+
+
+def loaded_state(load: float, t: float, ratio: float, params: Floats) -> float:
+    """Find the state by Newton's method, from one with at least the load alone on downwards."""
+    added = 2.0 / 3.0 * ratio
+    while law.terms(t, params)[4] < load:
+        t *= 2.0
     for _ in range(_MAX_ITERATIONS):
         a, da, _, dg, own = law.terms(t, params)
         step = (own + added * a * a * a - load) / (a * (dg + 3.0 * added * a * da))
@@ -169,12 +113,23 @@ def top_of_power(t: float, tilt: float, ratio: float, n: float) -> float:
     return 0.5 * tilt / (1.0 + ratio) if n == 2.0 else float(law.bisected_top(t, tilt, ratio, n))
 
 
+def slid(
+    t: float, a: float, slope: float, tilt: float, ratio: float, depth: float, size: float, params: Floats
+) -> Slid:
+    """Return how deep and how far; to the new top where g is nowhere so steep in the contact."""
+    steep = tilt * size / depth
+    if slope >= steep:
+        return depth * (a * steep * steep / slope), 2.0 * a / slope * size / depth * size
+    top = law.top(max(t, 0.0), steep, ratio, params)
+    return depth * steep * top, size * top / tilt
+
+
 def load_alone(x: Floats, asperities: Asperities, contacts: Contacts) -> None:
-    """Fill state, load, stiffness and radius of contacts that carry their load alone."""
+    """Fill state, load, stiffness and radii of contacts that carry their load alone."""
     depth, size, params = asperities.depth, asperities.size, asperities.params
     for i in range(x.size):
-        contacts.state[i] = contacts.load[i] = contacts.stiffness[i] = 0.0
-        contacts.radius[i] = size[i] if law.pinned else 0.0
+        contacts.state[i] = contacts.load[i] = contacts.growth[i] = contacts.stiffness[i] = contacts.radius[i] = 0.0
+        contacts.punch[i] = size[i] if law.pinned or law.flat else 0.0
         if x[i] > 0.0:
             own = law.params_of(params, i)
             t = law.state(x[i] / depth[i], own)
@@ -183,13 +138,13 @@ def load_alone(x: Floats, asperities: Asperities, contacts: Contacts) -> None:
             else:
                 a, _, _, _, load = law.terms(t, own)
             contacts.state[i] = t
-            contacts.radius[i] = size[i] * a
+            contacts.radius[i] = contacts.punch[i] = size[i] * a
             contacts.load[i] = 2.0 / math.pi * size[i] * depth[i] * load
-            contacts.stiffness[i] = 2.0 / math.pi * size[i] * a
+            contacts.growth[i] = contacts.stiffness[i] = 2.0 / math.pi * size[i] * a
 
 
 def respond(asperities: Asperities, field: Floats, contacts: Contacts) -> int:
-    """Fill radius, lift, moments and slide of contacts on a surface with the slopes and the Laplacian of ``field``.
+    """Fill radii, lift, moments and slide of contacts on a surface with the slopes and the Laplacian of ``field``.
 
     Return how many contacts are no discs: where the surface is curved more than the profile, the other way.
     """
@@ -200,37 +155,42 @@ def respond(asperities: Asperities, field: Floats, contacts: Contacts) -> int:
         tilt = math.hypot(field[1, i], field[2, i])
         t, own = contacts.state[i], law.params_of(params, i)
         touching = contacts.load[i] > 0.0
-        lift = moment = tilting = slide = 0.0
-        if law.pinned:
-            if touching:
-                a = size[i]
-                lift = 2.0 / 3.0 * curvature * a * a
-                moment = 4.0 / (3.0 * math.pi) * a**3 * depth[i] * t - 32.0 / (45.0 * math.pi) * curvature * a**5
-                tilting = 4.0 / (3.0 * math.pi) * a**3
-        else:
-            ratio = 2.0 * curvature * size[i] / depth[i] * size[i]
-            if ratio <= -1.0:
-                lost, ratio = lost + 1, 0.0
-            a = slope = 0.0
-            if touching:
-                alone = law.terms(t, own)[2]
-                t = law.curved_state(t, ratio, own)
+        a = slope = lift = moment = tilting = slide = 0.0
+        ratio = 2.0 * curvature * size[i] / depth[i] * size[i]
+        if ratio <= -1.0 and not law.pinned:
+            lost, ratio = lost + 1, 0.0
+        if touching:
+            if law.pinned and t >= 2.0 / 3.0 * ratio:
+                a = 1.0
+                lift = 2.0 / 3.0 * curvature * size[i] * size[i]
+                moment = (
+                    4.0 / (3.0 * math.pi) * size[i] ** 3 * depth[i] * t
+                    - 32.0 / (45.0 * math.pi) * curvature * size[i] ** 5
+                )
+            else:
+                alone = t if law.pinned else law.terms(t, own)[2]
+                t = -math.pow(1.5 * t / ratio, 1.0 / 3.0) if law.pinned else law.curved_state(t, ratio, own)
                 a, da, g, dg, _ = (-t, 1.0, 0.0, 0.0, 0.0) if t <= 0.0 else law.terms(t, own)
                 lift = depth[i] * ((g - alone) + ratio * a * a)
                 slope = dg / da + 2.0 * ratio * a
                 cubic = law.cubic_integral(t, own) if t > 0.0 else 0.0
                 moment = size[i] ** 3 * depth[i] / math.pi * (4.0 / 3.0 * cubic + 8.0 / 15.0 * ratio * a**5)
-                tilting = 4.0 / (3.0 * math.pi) * (size[i] * a) ** 3
-                contacts.radius[i] = size[i] * a
-            steep = tilt * size[i] / depth[i]
-            if steep > 0.0:
-                if slope >= steep:
-                    slide = 2.0 * a / slope * size[i] / depth[i] * size[i]
-                    lift -= depth[i] * (a * steep * steep / slope)
-                else:
-                    top = law.top(max(t, 0.0), steep, ratio, own)
-                    slide = size[i] * top / tilt
-                    lift -= depth[i] * steep * top
+            tilting = 4.0 / (3.0 * math.pi) * (size[i] * a) ** 3
+            contacts.radius[i] = size[i] * a
+            contacts.punch[i] = max(size[i] * a, size[i]) if law.pinned or law.flat else size[i] * a
+        steep = tilt * size[i] / depth[i]
+        load = 0.5 * math.pi * contacts.load[i] / size[i] / depth[i]
+        if law.edged and load < whole_edge(steep, law.edge_curvature(ratio, own)):
+            deeper, shift, narrower, turned = law.tipped(load, steep, ratio, own)
+            lift -= depth[i] * deeper
+            slide = size[i] * shift / tilt if tilt > 0.0 else 0.0
+            if touching:
+                a = 1.0 / (1.0 / a + narrower)
+                contacts.radius[i], contacts.stiffness[i] = size[i] * a, 2.0 / math.pi * size[i] * a
+                tilting = turned * 4.0 / (3.0 * math.pi) * (size[i] * a) ** 3
+        elif steep > 0.0 and not law.pinned:
+            deeper, slide = law.slid(t, a, slope, tilt, ratio, depth[i], size[i], own)
+            lift -= deeper
         contacts.lift[i], contacts.second_moment[i], contacts.tilting[i], contacts.slide[i] = (
             lift, moment, tilting, slide
         )  # fmt: skip
@@ -243,6 +203,7 @@ def coupled_kernels(kernels: Kernels) -> CoupledKernels:
     whole = CoupledKernels(f"coupled_{kernels.name}")
     vars(whole).update(vars(kernels) | {"__name__": whole.__name__})
     whole.pinned = kernels.name.endswith("flat_punch")
+    whole.edged = whole.pinned or (isinstance(kernels, ProfileKernels) and (kernels.flat or kernels.corner))
     parts: dict[str, Callable[..., object]]
     if isinstance(kernels, ProfileKernels):
         parts = {
@@ -260,6 +221,7 @@ def coupled_kernels(kernels: Kernels) -> CoupledKernels:
             "bisected_top": top,
             "top": top_of_power,
         }
-    for name, part in (parts | {"load_alone": load_alone, "respond": respond}).items():
+    common = loaded_state, slid, edge_curvature, tipped, load_alone, respond
+    for name, part in (parts | {each.__name__: each for each in common}).items():
         vars(whole)[name] = specialise(part, whole)
     return whole

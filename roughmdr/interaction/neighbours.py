@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from roughmdr.numerics.arguments import Floats
 
 _PAIRS_AT_A_TIME = 2.0**22
+_BEYOND_ALL = 1.01  # times the diagonal of all points: two of them lie on it, but for rounding
 _AT_ONCE = 2.0**12  # pairs so few that one class is found sooner than several
 
 
@@ -28,7 +29,7 @@ def within_reach(
     whole = cKDTree(wrapped, boxsize=sides)
     extent = np.ptp(at, axis=0) if sides is None else sides
     density = len(at) / max(float(extent[0] * extent[1]), float(np.finfo(np.float64).tiny))
-    farthest = float(np.hypot(*extent))
+    farthest = _BEYOND_ALL * float(np.hypot(*extent))
 
     def expected(far: float) -> float:
         return min(density * math.pi * far * far, len(at)) + 1.0

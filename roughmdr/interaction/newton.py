@@ -14,7 +14,7 @@ import numpy as np
 from scipy.sparse.linalg import LinearOperator, cg, gmres
 
 from roughmdr.interaction import close
-from roughmdr.interaction.contacts import Asperities, Contacts, CoupledKernels
+from roughmdr.interaction.interface import Asperities, Contacts, CoupledKernels
 from roughmdr.numerics.arguments import Floats
 
 _MAX_STEPS = 40
@@ -91,9 +91,9 @@ def evaluate(system: System, x: Floats, separation: float, pairs: close.Pairs | 
     kernels, asperities, coupling = system.kernels, system.asperities, system.coupling
     contacts = Contacts(*np.zeros((len(Contacts._fields), x.size)))
     kernels.load_alone(x, asperities, contacts)
-    if pairs is None or pairs.outgrown(contacts.radius):
-        pairs = close.find_pairs(system.at, contacts.radius, system.sides)
-    close.update_shares(pairs, contacts.radius)
+    if pairs is None or pairs.outgrown(contacts.punch):
+        pairs = close.find_pairs(system.at, contacts.punch, system.sides)
+    close.update_shares(pairs, contacts.punch)
     load, lost = contacts.load, 0
     if system.order == 1:
         field = np.zeros((4, x.size))
@@ -109,7 +109,7 @@ def evaluate(system: System, x: Floats, separation: float, pairs: close.Pairs | 
         displacement = field[0] + coupling.of_moments(*moments)
         close.take_from_moments(pairs, *moments, displacement)
     with np.errstate(invalid="ignore", divide="ignore"):
-        excess = np.where(load > 0.0, contacts.second_moment / (load * contacts.radius**2), 0.0)
+        excess = np.where(load > 0.0, contacts.second_moment / (load * contacts.punch**2), 0.0)
     close.add_contacts(pairs, contacts, excess, displacement)
     displacement = displacement + contacts.lift
     residual = x + displacement + (separation - asperities.height)
@@ -140,7 +140,7 @@ def _step(system: System, state: State, values: Floats, right: Floats, rtol: flo
 
 def _tangent(state: State) -> Floats:
     values = np.zeros(state.pairs.share.size)
-    close.tangent(state.pairs, state.contacts.radius, values)
+    close.tangent(state.pairs, state.contacts.punch, values)
     return values
 
 
@@ -150,8 +150,8 @@ def solve(system: System, x: Floats, separation: float, error: float) -> Equilib
     state = evaluate(system, x, separation, None)
     before, largest, taken, last = np.inf, [np.inf], np.ones_like(x), np.zeros_like(x)
     for number in range(_MAX_STEPS):
-        stiffness = state.contacts.stiffness
-        touching = stiffness > 0.0
+        growth = state.contacts.growth
+        touching = growth > 0.0
         if not np.isfinite(state.residual).all():
             break
         if not touching.any() and not (state.residual < 0.0).any():
@@ -162,7 +162,7 @@ def solve(system: System, x: Floats, separation: float, error: float) -> Equilib
         if touching.any():
             potential = system.tangent.potential(change)
             close.add_tangent(state.pairs, values, change, potential)
-            moved = np.where(touching, change / np.where(touching, stiffness, 1.0), -state.residual - potential)
+            moved = np.where(touching, change / np.where(touching, growth, 1.0), -state.residual - potential)
         back = moved * last < 0.0
         taken = np.where(back, taken * np.abs(last) / (np.abs(last) + np.abs(moved)), np.minimum(2.0 * taken, 1.0))
         last = moved
@@ -189,15 +189,15 @@ def total_stiffness(system: System, state: State, separation: float) -> float:
 
     NaN where it is not found.
     """
-    stiffness = state.contacts.stiffness
-    touching = stiffness > 0.0
+    growth = state.contacts.growth
+    touching = growth > 0.0
     if not touching.any():
         return 0.0
     values, right = _tangent(state), np.where(touching, 1.0, 0.0)
     probe = _PROBE * float(state.x.max())
 
     def product(load: Floats) -> Floats:
-        moved = np.where(touching, load.ravel() / np.where(touching, stiffness, 1.0), 0.0)
+        moved = np.where(touching, load.ravel() / np.where(touching, growth, 1.0), 0.0)
         largest = float(np.abs(moved).max())
         if largest == 0.0:
             return np.zeros_like(moved)

@@ -7,8 +7,8 @@ import numpy as np
 from roughmdr.ensemble.ensemble import Ensemble
 from roughmdr.errors import OutOfRange, SceneError
 from roughmdr.interaction.buried import Buried, buried
-from roughmdr.interaction.contacts import Asperities
 from roughmdr.interaction.green import Periodic
+from roughmdr.interaction.interface import Asperities
 from roughmdr.interaction.placed import sides_of
 from roughmdr.interaction.settings import Interaction
 from roughmdr.kernels.adhesion import Adhesion

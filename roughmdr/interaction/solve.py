@@ -196,6 +196,7 @@ def _totals(candidates: Candidates, found: Equilibrium, h: float, modulus: float
             candidates.sides,
             candidates.emerging[:count],
             candidates.interaction.order,
+            contacts.punch,
         )
     overlap = Overlap(int(overlapping.sum()), share, near)
     rigidity = total_stiffness(candidates.system, found.state, h) if "stiffness" in names else 0.0

@@ -86,11 +86,13 @@ def test_pairs_are_summed_as_one_by_one(count: int, seed: int, order: int, repea
     rng = np.random.default_rng(seed)
     at, radius, load = rng.random((count, 2)), 0.1 * rng.random(count), rng.random(count) * (rng.random(count) > 0.3)
     emerging = np.where(rng.random(count) < 0.3, 0.1 * rng.random(count), np.inf)
-    found = crowding(at, radius, load, np.ones(2) if repeats else None, emerging, order)
+    whole = radius * np.where(rng.random(count) < 0.3, 1.0 + rng.random(count), 1.0)
+    found = crowding(at, radius, load, np.ones(2) if repeats else None, emerging, order, whole)
     plain = 0.0
     for i in np.flatnonzero(load):
         share = load[i] / load.sum()
         plain += 0.22 * share * max(1.0 - emerging[i] / radius[i], 0.0)
+        plain += 0.4 * share * (1.0 - radius[i] / whole[i]) ** 1.5
         for j in np.flatnonzero(load):
             apart = at[i] - at[j]
             away = math.hypot(*(apart - np.rint(apart) if repeats else apart)) / (radius[i] + radius[j])
@@ -98,6 +100,13 @@ def test_pairs_are_summed_as_one_by_one(count: int, seed: int, order: int, repea
                 near = 0.02 / max(away, 1.0) ** 3 if order == 1 else 0.004 / max(away, 1.0) ** 6
                 plain += share * (near + 0.45 * max(1.0 - away, 0.0))
     assert found == pytest.approx(plain, rel=1e-9, abs=1e-12)
+
+
+def test_two_contacts_are_found_however_their_distance_is_rounded() -> None:
+    """They span all there is: none is farther, but for rounding."""
+    for at in np.random.default_rng(1).random((100, 2, 2)):
+        near = crowding(at, np.full(2, 0.5 * math.dist(*at)), np.ones(2), None, np.full(2, np.inf), 2)
+        assert near == pytest.approx(0.004, rel=1e-6)
 
 
 def test_equal_contacts_count_once_a_pair() -> None:

@@ -9,9 +9,9 @@ import pytest
 from numpy.typing import NDArray
 
 import roughmdr as rm
-from roughmdr.interaction.contacts import Asperities
 from roughmdr.interaction.dense import Dense
 from roughmdr.interaction.green import Periodic
+from roughmdr.interaction.interface import Asperities
 from roughmdr.interaction.jkr import coincident, equilibrium, factors
 from roughmdr.interaction.jkr.bracket import Bracket
 from roughmdr.interaction.jkr.choose import jkr_kernels

@@ -19,7 +19,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from roughmdr.interaction.contacts import Asperities
+from roughmdr.interaction.interface import Asperities
 from roughmdr.interaction.jkr.interface import law
 from roughmdr.numerics.arguments import Floats
 

@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roughmdr.interaction import close
-from roughmdr.interaction.contacts import Asperities
 from roughmdr.interaction.dense import Dense
+from roughmdr.interaction.interface import Asperities
 from roughmdr.interaction.jkr import coincident
 from roughmdr.interaction.jkr.contacts import Contacts
 from roughmdr.interaction.jkr.interface import JkrKernels

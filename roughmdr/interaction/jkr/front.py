@@ -8,9 +8,9 @@ from numpy.typing import NDArray
 
 from roughmdr.errors import OutOfRange
 from roughmdr.interaction import close
-from roughmdr.interaction.contacts import Asperities
 from roughmdr.interaction.dense import Dense
 from roughmdr.interaction.green import below_all
+from roughmdr.interaction.interface import Asperities
 from roughmdr.interaction.jkr import coincident
 from roughmdr.interaction.jkr.branch import NoEquilibriumError
 from roughmdr.interaction.jkr.choose import jkr_kernels

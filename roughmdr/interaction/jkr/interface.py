@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 
-from roughmdr.interaction.contacts import CoupledKernels
+from roughmdr.interaction.interface import CoupledKernels
 
 
 class JkrKernels(CoupledKernels):

@@ -6,7 +6,7 @@ Its state is the next at which the edge is at rest. The energy is that of ``cont
 import math
 from typing import NamedTuple
 
-from roughmdr.interaction.contacts import Asperities
+from roughmdr.interaction.interface import Asperities
 from roughmdr.interaction.jkr.interface import law
 from roughmdr.numerics.arguments import Floats
 
