@@ -1,5 +1,6 @@
 """A step depends on the path up to it only: parts of random paths have the bits that the whole paths have there."""
 
+import math
 from typing import Any
 
 import numpy as np
@@ -75,3 +76,44 @@ def test_independent_with_adhesion(adhesion: str, control: str) -> None:
     rng = np.random.default_rng([2, CONTROLS.index(control)])
     given = {"work": WORK, "adhesion": adhesion} | ({"strength": 2e6} if adhesion == "dugdale" else {})
     check_parts(placed(rng, 10, SIDE), control, walk(rng, control, adhesive=True), rng, **given)
+
+
+@pytest.mark.filterwarnings("ignore::UserWarning")
+@pytest.mark.parametrize("control", ["separation", pytest.param("force", marks=pytest.mark.large)])
+@pytest.mark.parametrize("order", [1, 2])
+def test_adhesive_pairs_that_come_to_overlap(order: int, control: str) -> None:
+    rng = np.random.default_rng([3, order])
+    interaction = {"model": "pairwise", "boundary": "free", "order": order}
+    values = walk(rng, control, adhesive=True)
+    check_parts(placed(rng, 4, 6e-6), control, values, rng, work=WORK, interaction=interaction)
+
+
+def two(distance: float) -> xr.Dataset:
+    """Equal paraboloids, R = 1, at a distance in units of a0 = 1."""
+    columns = {"height": [0.0, 0.0], "radius": [1.0, 1.0], "x": [0.0, distance], "y": [0.0, 0.0]}
+    return xr.Dataset({name: ("asperity", values) for name, values in columns.items()}, attrs={"shape": "paraboloid"})
+
+
+def force_of_two(separation: list[float]) -> np.ndarray:
+    free = {"model": "pairwise", "boundary": "free"}
+    found = rm.load_separation(
+        two(4.0), separation=separation, effective_modulus=1.0, work=0.5 / math.pi, interaction=free
+    )
+    return np.asarray(found.force.values)
+
+
+@pytest.mark.filterwarnings("ignore::UserWarning")
+def test_two_contacts_that_overlap_later_feel_nothing_of_it_before() -> None:
+    alone = force_of_two([-0.8])
+    np.testing.assert_allclose(alone, 0.68391, rtol=1e-5)
+    for deepest in (-4.0, -6.0):
+        np.testing.assert_array_equal(force_of_two([-0.8, deepest])[:1], alone)
+
+
+@pytest.mark.filterwarnings("ignore::UserWarning")
+def test_two_contacts_that_overlapped_come_back_to_the_same_forces() -> None:
+    """No contact jumps between: the way up is the way down, whatever the steps."""
+    down = [-0.8, -2.0, -3.5, -6.0]
+    there_and_back = force_of_two([*down, -3.5, -2.0, -0.8])
+    np.testing.assert_allclose(there_and_back[4:], there_and_back[2::-1], rtol=1e-12)
+    np.testing.assert_allclose(force_of_two([-6.0, -0.8]), there_and_back[[3, 0]], rtol=1e-12)

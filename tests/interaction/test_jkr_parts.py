@@ -64,8 +64,9 @@ def guess(shape: Shape, at: Floats, order: int) -> tuple[Problem, State]:
         t[i] = law.next_state(0.0, True, Surface(depth), WORK, i, asperities)
         load[i] = 1.2 * law.lone_load(t[i], Surface(depth), WORK, i, asperities)
     inside = np.ones(len(at), np.bool_)
-    none = coincident.find(at, np.zeros(len(at)), None)
-    problem = Problem(law, asperities, coupling, none, order, WORK, np.full(len(at), 1e-6))
+    natural = np.full(len(at), 1e-6)
+    near = coincident.Near(law, asperities, natural, coincident.find(at, np.zeros(len(at)), None))
+    problem = Problem(law, asperities, coupling, near, order, WORK, natural)
     return problem, evaluate(problem, inside, t, load, -1e-6, np.zeros((5, len(at))))
 
 
@@ -163,7 +164,8 @@ def test_the_compiled_loops_are_their_sources(name: str) -> None:
         compared = rows.copy()
         largest = run(equilibrium._compare)(state.inside, law.pinned, WORK, contacts, problem.natural, compared)
         block, cross = np.zeros((2, 4, 4))
-        run(factors._fill)(problem.coupling.matrices, 2, contacts, field[1:3], block, cross)
+        pairs = state.overlap.pairs
+        run(factors._fill)(problem.coupling.matrices, pairs, 2, contacts, field[1:3], block, cross)
         matrix = block.copy()
         run(factors._eliminate)(cross, contacts.radius, np.full(4, -0.7), np.full(4, 0.3), matrix)
         states = [run(law.next_state)(0.0, True, Surface(2e-6, 0.1, 1e-8), WORK, 1, asperities)]
