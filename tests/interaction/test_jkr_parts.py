@@ -195,7 +195,7 @@ def test_pairs_overlap_by_the_radii_at_which_profiles_have_risen(name: str) -> N
 
     rtol = 1e-6 if law.flat else 1e-10  # next to a flat the radius has few digits of the rise
     np.testing.assert_allclose(risen(1.0), natural, rtol=rtol)
-    np.testing.assert_allclose(risen(1e-6), natural + [0.0, 1e-6 / 3.0], rtol=rtol)
+    np.testing.assert_allclose(risen(1e-6), natural + np.array([0.0, 1e-6 / 3.0]), rtol=rtol)
     np.testing.assert_allclose(risen(0.0), 1.25 * natural, rtol=rtol)
     np.testing.assert_allclose(risen(-1e-5), natural + 1e-5, rtol=rtol)
     for h in (2e-6, 1e-6, 0.0, -2e-6, -3e-6, -1e-5):
