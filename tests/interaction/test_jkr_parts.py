@@ -276,3 +276,12 @@ def test_mixing_solves_a_linear_iteration_in_as_many_steps_as_unknowns(count: in
         mixing.go(way)
         at = at + way
     np.testing.assert_allclose(at, exact, rtol=1e-8)
+
+
+@pytest.mark.parametrize("periodic", [False, True])
+def test_matrices_of_more_points_take_over_those_of_the_first(periodic: bool) -> None:
+    x, y = np.random.default_rng(3).uniform(0.0, 1.0, (2, 7))
+    patch = Periodic.of(1.3)
+    known = Dense(x[:4], y[:4], patch, periodic)
+    whole = Dense(x, y, patch, periodic)
+    np.testing.assert_array_equal(Dense(x, y, patch, periodic, known).matrices, whole.matrices)

@@ -22,7 +22,7 @@ from roughmdr.interaction.placed_asperities import Placed
 from roughmdr.numerics.arguments import Floats
 
 _GROWTH = 1.3  # of the number of asperities that are looked at, where more may touch
-_FURTHER = 0.3  # of its depth by which the flat may come closer before pairs that may overlap are looked for again
+_FURTHER = 1.0  # of its depth by which the flat may come closer before pairs that may overlap are looked for again
 _MARGIN = 0.25  # of the natural depth, within which asperities out of contact are looked at
 _CLEAR = 0.1  # of the margin that asperities outside the window must keep
 _MOST_AVALANCHES = 10  # in a step, over the number of asperities near contact: more lead nowhere
@@ -57,6 +57,7 @@ class Front:
         self._asperities = placed.asperities(placed.height.size)
         self._natural, self.made = _lone_scales(self._kernels, self._asperities, self.work)
         self._lowest = math.inf  # separation down to which the pairs are known that may overlap
+        self._coupling: Dense | None = None
         self._take(0)
 
     @property
@@ -71,10 +72,11 @@ class Front:
 
     def _bring_down(self, state: State, h: float) -> State:
         """Have the asperities that a flat at h may touch, and the pairs that may overlap; return the state with all."""
-        if h < self._lowest:
+        needed = int(np.searchsorted(-self.placed.height, self.depth - h, side="right"))
+        have, nearer = self.problem.natural.size, h < self._lowest
+        if nearer:
             self._lowest = h - _FURTHER * max(self.top - h, self.depth)
-            needed = int(np.searchsorted(-self.placed.height, self.depth - h, side="right"))
-            have = state.t.size
+        if nearer or have < needed:
             self._take(have if have >= needed else math.ceil(_GROWTH * needed))
         return self._extended(state)
 
@@ -86,7 +88,7 @@ class Front:
             self.next_height = float(placed.height[count])
         at, few = placed.at[:count], Asperities(*(each[:count] for each in self._asperities))
         x, y = np.ascontiguousarray(at.T)
-        coupling = Dense(x, y, placed.patch, interaction.boundary == "periodic")
+        coupling = self._coupling = Dense(x, y, placed.patch, interaction.boundary == "periodic", self._coupling)
         natural, reach = self._natural[:count], np.empty((2, count))
         kernels.flanks(np.arange(count), self._lowest, natural, few, reach)
         near = coincident.Near(kernels, few, natural, coincident.find(at, reach[0], placed.sides))

@@ -53,8 +53,8 @@ class Tangent:
             potential = problem.coupling.of_moments(*moments)
             close.take_from_moments(pairs, *moments, potential)
             if closer != 0.0:
-                rows = c.second_moment * 0.25, c.tilting * whole[1], c.tilting * whole[2]
-                close.take_from_moments(sharing, *(closer * row for row in rows), potential)
+                standing = 0.25 * closer * c.second_moment, closer * c.tilting * whole[1], closer * c.tilting * whole[2]
+                close.take_from_moments(sharing, *standing, potential)
             gap -= potential + 2.0 / 3.0 * a * a * bent - c.lift * along
         if pairs.share.size:
             self._add_bells(step, closer, edge, gap)
