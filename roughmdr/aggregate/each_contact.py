@@ -109,16 +109,16 @@ def _coupled(
     interaction: Interaction,
 ) -> tuple[Floats, Floats]:
     """Return force and radius of each asperity at a step, by the solution of all together along the path."""
-    names = set[str]()
+    names, path = set[str](), separation[: step + 1]
     along: Adhering | Coupled
     if work > 0.0:
         from roughmdr.interaction.jkr.path import solve_path as solve_adhering
 
-        along = solve_adhering(ensemble, separation, effective_modulus, work, interaction, names, at=step)
+        along = solve_adhering(ensemble, path, effective_modulus, work, interaction, names, at=step)
     else:
         from roughmdr.interaction.solve import solve_path
 
-        along = solve_path(ensemble, separation[: step + 1], effective_modulus, interaction, names, at=step)
+        along = solve_path(ensemble, path, effective_modulus, interaction, names, at=step)
     solved, force, radius = along.steps[step], along.force, along.radius
     if not np.isfinite(solved.error):
         raise OutOfRange(f"there is no equilibrium of the contacts at step {step}, separation {separation[step]:g} m")

@@ -40,8 +40,6 @@ class Punches(NamedTuple):
     pairs: close.Pairs
     """Those that overlap."""
     order: int
-    without_pairs: bool
-    """Whether the coupling is without the expansion of the pairs already."""
 
     @classmethod
     def of(cls, system: System, state: State) -> "Punches":
@@ -51,14 +49,14 @@ class Punches(NamedTuple):
         slid = -contacts.slide * state.slopes
         pairs = state.pairs._replace(share=np.zeros_like(state.pairs.share))
         close.update_shares(pairs, radius)
-        return cls(radius, slid, system.coupling, system.tangent, pairs, system.order, False)
+        return cls(radius, slid, system.coupling, system.tangent, pairs, system.order)
 
     @classmethod
     def of_adhesive(cls, problem: "Problem", state: "AdhesiveState") -> "Punches":
         """Return the punches of adhesive contacts; all of a problem are in contact."""
         contacts, coupling = state.contacts, problem.coupling
         slid = -contacts.lift * (state.field[1:3] + state.outer[1:3])
-        return cls(contacts.radius, slid, coupling, coupling, problem.pairs, problem.order, True)
+        return cls(contacts.radius, slid, coupling, coupling, state.overlap.pairs, problem.order)
 
 
 def total_conductance(punches: Punches, error: float) -> float:
@@ -96,8 +94,7 @@ def _of_pairs(punches: Punches) -> tuple[Floats, Floats]:
     expansion = pairs.share / pairs.apart[:, 2]
     beyond = np.zeros_like(expansion)
     close.tangent(pairs, punches.radius, beyond)
-    whole = beyond + expansion
-    return whole, whole if punches.without_pairs else beyond
+    return beyond + expansion, beyond
 
 
 def _displacement(punches: Punches, load: Floats, whole: Floats, added: Floats) -> Floats:
@@ -108,13 +105,11 @@ def _displacement(punches: Punches, load: Floats, whole: Floats, added: Floats) 
         close.add_tangent(pairs, added, load, displacement)
         return displacement
     field = coupling.field(load)
-    if not punches.without_pairs:
-        close.take_from_field(pairs, load, field)
+    close.take_from_field(pairs, load, field)
     spread, tilting, (x, y) = a * a / 6.0, 4.0 / (3.0 * math.pi) * a**3, punches.slid
     moments = spread * load, tilting * field[1] - x * load, tilting * field[2] - y * load
     displacement = np.asarray(field[0] + x * field[1] + y * field[2] + spread * field[3])
     displacement += coupling.of_moments(*moments)
-    if not punches.without_pairs:
-        close.take_from_moments(pairs, *moments, displacement)
+    close.take_from_moments(pairs, *moments, displacement)
     close.add_tangent(pairs, whole, load, displacement)
     return displacement

@@ -11,8 +11,9 @@ from roughmdr.numerics.jit import njit
 
 
 @njit
-def _fill(x: Floats, y: Floats, patch: Periodic, periodic: bool, matrices: Floats) -> None:
-    for i in range(x.size):
+def _fill(x: Floats, y: Floats, patch: Periodic, periodic: bool, first: int, matrices: Floats) -> None:
+    """Fill the matrices but for the pairs of the points before ``first``."""
+    for i in range(first, x.size):
         for j in range(i + 1):
             if periodic:
                 field = periodic_load(x[i] - x[j], y[i] - y[j], patch)
@@ -24,14 +25,20 @@ def _fill(x: Floats, y: Floats, patch: Periodic, periodic: bool, matrices: Float
 
 
 class Dense:
-    """Matrices of G, its slopes and its Laplacian, [row, asperity, asperity], in units of the patch."""
+    """Matrices of G, its slopes and its Laplacian, [row, asperity, asperity], in units of the patch.
 
-    def __init__(self, x: Floats, y: Floats, patch: Periodic, periodic: bool) -> None:
+    Those of the first points may be known.
+    """
+
+    def __init__(self, x: Floats, y: Floats, patch: Periodic, periodic: bool, known: "Dense | None" = None) -> None:
         self.error = 1e-12
         """Of the displacements."""
         self.matrices = np.empty((4, x.size, x.size))
         self._last: tuple[NDArray[np.int64], Dense] | None = None
-        _fill(x, y, patch, periodic, self.matrices)
+        first = 0 if known is None else known.matrices.shape[1]
+        if known is not None:
+            self.matrices[:, :first, :first] = known.matrices
+        _fill(x, y, patch, periodic, first, self.matrices)
 
     def part(self, kept: NDArray[np.int64]) -> "Dense":
         """Return the matrices of some of the asperities; those returned last are remembered."""

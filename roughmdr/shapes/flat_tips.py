@@ -24,7 +24,7 @@ _Truncated = partial(_FlatTip, softening_count=one, corner=True)
 
 @dataclass(frozen=True)
 class FlatPunch(Shape):
-    """f = 0 to the radius b [m], where the punch ends, and the contact unless others tilt it. ShapeError unless b > 0."""
+    """f = 0 to the radius b [m], where the punch ends, and a contact that is not tilted. ShapeError unless b > 0."""
 
     radius: float
 

@@ -255,6 +255,33 @@ def test_more_cycles_close(seed: int) -> None:
     check_closed(seed)
 
 
+@pytest.mark.parametrize("order", [1, 2])
+def test_stiffness_is_the_slope_of_the_force_as_contacts_come_to_overlap(order: int) -> None:
+    """Two contacts at 4 a0 change over from h = -2 d0 on, by differences of the fourth order."""
+    middle, size = np.linspace(-1.0, -6.0, 11), 1e-3
+    h = (middle[:, None] + size * np.array([2.0, 1.0, 0.0, -1.0, -2.0])).ravel()
+    pair = placed(UNIT, [(0, 0), (4, 0)], [0, -0.3])
+    found = follow(pair, UNIT, h, order=order, names="stiffness").steps
+    force = np.array([step.force for step in found]).reshape(-1, 5)
+    slope = -(force @ [-1.0, 8.0, 0.0, -8.0, 1.0]) / (12.0 * size * UNIT.d0)
+    stiffness = np.array([step.stiffness for step in found]).reshape(-1, 5)[:, 2]
+    np.testing.assert_allclose(stiffness, slope, rtol=1e-7)
+    assert found[0].overlap.contacts == 0
+    assert found[-1].overlap.contacts == 2
+
+
+def test_events_depend_not_on_the_steps_where_contacts_overlap() -> None:
+    at, z = [(0, 0), (3, 0), (0, 3), (4, 4), (8, 2)], np.array([0.0, -0.3, -0.6, -1.2, -1.7])
+    few = follow(placed(UNIT, at, z), UNIT, [1.0, -2.5, 3.0], order=2)
+    fine = np.concatenate([np.linspace(1.0, -2.5, 57), np.linspace(-2.5, 3.0, 91)])
+    many = follow(placed(UNIT, at, z), UNIT, fine, order=2)
+    assert max(step.overlap.contacts for step in few.steps) >= 3
+    assert [each.size for each in few.avalanches] == [each.size for each in many.avalanches]
+    for one, other in zip(few.avalanches, many.avalanches, strict=True):
+        assert abs(one.separation - other.separation) < 1e-11 * UNIT.d0
+        assert one.dissipated == pytest.approx(other.dissipated, rel=1e-8)
+
+
 def test_events_depend_neither_on_the_steps_nor_on_the_order_of_asperities() -> None:
     at, z = [(0, 0), (5, 0), (0, 5), (6, 6), (11, 2)], np.array([0.0, -0.3, -0.05, -0.2, -0.01])
     few = follow(placed(UNIT, at, z), UNIT, [1.0, -1.0, 2.0], order=2)

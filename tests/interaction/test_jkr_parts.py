@@ -53,9 +53,23 @@ def kernels_of(shape: Shape, count: int) -> tuple[JkrKernels, Asperities]:
     return law, Asperities(np.zeros(count), np.full(count, depth), np.full(count, size), made)
 
 
-def guess(shape: Shape, at: Floats, order: int) -> tuple[Problem, State]:
-    """Return contacts near those alone at different indentations, of which none is in equilibrium."""
+def flanks(law: JkrKernels, asperities: Asperities, natural: Floats, h: float) -> Floats:
+    """Return the radii that decide on overlap under a flat at h, and their slopes over it."""
+    found = np.empty((2, natural.size))
+    law.flanks(np.arange(natural.size), h, natural, asperities, found)
+    return found
+
+
+def guess(shape: Shape, at: Floats, order: int, *, overlapping: bool = False) -> tuple[Problem, State]:
+    """Return contacts near those alone at different indentations, of which none is in equilibrium.
+
+    Overlapping ones are brought so near that some pairs share half, and others less or more.
+    """
     law, asperities = kernels_of(shape, len(at))
+    natural = np.full(len(at), 1e-6)
+    radius = flanks(law, asperities, natural, -1e-6)[0]
+    if overlapping:
+        at = at * (0.9 * radius[:2].sum() / np.hypot(*(at[1] - at[0])))
     x, y = np.ascontiguousarray(at.T)
     coupling = Dense(x, y, Periodic(1.0, 1.0), periodic=False)
     t, load = np.empty((2, len(at)))
@@ -64,17 +78,19 @@ def guess(shape: Shape, at: Floats, order: int) -> tuple[Problem, State]:
         t[i] = law.next_state(0.0, True, Surface(depth), WORK, i, asperities)
         load[i] = 1.2 * law.lone_load(t[i], Surface(depth), WORK, i, asperities)
     inside = np.ones(len(at), np.bool_)
-    none = coincident.find(at, np.zeros(len(at)), None)
-    problem = Problem(law, asperities, coupling, none, order, WORK, np.full(len(at), 1e-6))
+    near = coincident.Near(law, asperities, natural, coincident.find(at, radius * overlapping, None))
+    problem = Problem(law, asperities, coupling, near, order, WORK, natural)
     return problem, evaluate(problem, inside, t, load, -1e-6, np.zeros((5, len(at))))
 
 
 AT = np.array([[0.0, 0.0], [0.04, 0.01], [-0.02, 0.05], [0.05, 0.06]])
 
 
+@pytest.mark.parametrize("overlapping", [False, True])
 @pytest.mark.parametrize("name", EXAMPLES)
-def test_factors_of_the_first_order_are_the_tangent(name: str) -> None:
-    problem, state = guess(EXAMPLES[name], AT, 1)
+def test_factors_of_the_first_order_are_the_tangent(name: str, overlapping: bool) -> None:
+    problem, state = guess(EXAMPLES[name], AT, 1, overlapping=overlapping)
+    assert state.overlap.pairs.share.any() == overlapping
     tangent = Tangent(problem, state, Drive(0.0, np.zeros((5, 4))))
     rng = np.random.default_rng(4)
     step = Step(1e-3 * state.contacts.radius * rng.normal(size=4), 1e-3 * np.abs(state.load) * rng.normal(size=4))
@@ -101,11 +117,12 @@ def test_factors_of_the_second_order_near_the_tangent_with_distance(name: str) -
         assert math.log2(off[1] / off[2]) > 3.9
 
 
+@pytest.mark.parametrize("overlapping", [False, True])
 @pytest.mark.parametrize("seed", range(6))
-def test_unstable_modes_are_counted(seed: int) -> None:
+def test_unstable_modes_are_counted(seed: int, overlapping: bool) -> None:
     """Radii below that of a fold have negative stiffness: as many modes as the second derivatives over radii have."""
     rng = np.random.default_rng(seed)
-    problem, state = guess(EXAMPLES["paraboloid"], AT, 1)
+    problem, state = guess(EXAMPLES["paraboloid"], AT, 1, overlapping=overlapping)
     t = state.t * rng.uniform(0.2, 1.1, 4)
     load = np.array([problem.kernels.lone_load(t[i], Surface(0.0), WORK, i, problem.asperities) for i in range(4)])
     state = evaluate(problem, state.inside, t, load, -1e-6, state.outer)
@@ -119,10 +136,11 @@ def test_unstable_modes_are_counted(seed: int) -> None:
     assert Factors(problem, state).unstable == negative
 
 
+@pytest.mark.parametrize(("overlapping", "order"), [(False, 2), (True, 1), (True, 2)])
 @pytest.mark.parametrize("name", EXAMPLES)
-def test_residuals_are_derivatives_of_the_energy(name: str) -> None:
+def test_residuals_are_derivatives_of_the_energy(name: str, overlapping: bool, order: int) -> None:
     """The tangent is the change of the residuals, by differences."""
-    problem, state = guess(EXAMPLES[name], AT, 2)
+    problem, state = guess(EXAMPLES[name], AT, order, overlapping=overlapping)
     tangent = Tangent(problem, state, Drive(0.0, np.zeros((5, 4))))
     for asperity in range(4):
         size = 1e-5
@@ -143,6 +161,47 @@ def test_residuals_are_derivatives_of_the_energy(name: str) -> None:
             if not problem.kernels.pinned:
                 found = 0.5 * (more.edge * 2.0 * more.release - less.edge * 2.0 * less.release)
                 assert np.abs(found - edge).max() < 1e-6 * np.abs(edge).max()
+    size = 1e-11
+    more, less = (evaluate(problem, state.inside, state.t, state.load, -1e-6 + h, state.outer) for h in (size, -size))
+    edge, gap = Tangent(problem, state, Drive(size, np.zeros((5, 4)))).along()
+    assert np.abs(0.5 * (more.gap - less.gap) - gap).max() < 1e-6 * np.abs(gap).max()
+    if not problem.kernels.pinned:
+        found = 0.5 * (more.edge * 2.0 * more.release - less.edge * 2.0 * less.release)
+        scale = max(float(np.abs(edge).max()), 1e-9 * float(np.abs(state.edge * 2.0 * state.release).max()))
+        assert np.abs(found - edge).max() < 1e-5 * scale
+
+
+@pytest.mark.parametrize("name", EXAMPLES)
+def test_pairs_overlap_by_the_radii_at_which_profiles_have_risen(name: str) -> None:
+    """By the natural depth far above first touch, and by the depth in addition well below it; smoothly between."""
+    shape = EXAMPLES[name]
+    law, asperities = kernels_of(shape, 2)
+    natural = np.array([1e-6, 3e-6])
+    if law.pinned:
+        np.testing.assert_array_equal(flanks(law, asperities, natural, -1e-5), [asperities.size, [0.0, 0.0]])
+        return
+
+    def risen(h: float) -> Floats:
+        """Return g at the radii, by their states."""
+        radius, found = flanks(law, asperities, natural, h)[0], []
+        for i in range(2):
+            low, high = 0.0, 1e6
+            for _ in range(200):
+                middle = 0.5 * (low + high)
+                inside = law.terms(middle, law.params_of(asperities.params, i))[0] * asperities.size[i] < radius[i]
+                low, high = (middle, high) if inside else (low, middle)
+            found.append(law.terms(low, law.params_of(asperities.params, i))[2] * asperities.depth[i])
+        return np.array(found)
+
+    rtol = 1e-6 if law.flat else 1e-10  # next to a flat the radius has few digits of the rise
+    np.testing.assert_allclose(risen(1.0), natural, rtol=rtol)
+    np.testing.assert_allclose(risen(1e-6), natural + np.array([0.0, 1e-6 / 3.0]), rtol=rtol)
+    np.testing.assert_allclose(risen(0.0), 1.25 * natural, rtol=rtol)
+    np.testing.assert_allclose(risen(-1e-5), natural + 1e-5, rtol=rtol)
+    for h in (2e-6, 1e-6, 0.0, -2e-6, -3e-6, -1e-5):
+        more, less = (flanks(law, asperities, natural, h + size)[0] for size in (1e-10, -1e-10))
+        slope = flanks(law, asperities, natural, h)[1]
+        np.testing.assert_allclose((more - less) / 2e-10, slope, rtol=1e-4, atol=1e-4 * np.abs(slope).max())
 
 
 def plain(function: Any) -> Any:
@@ -163,7 +222,8 @@ def test_the_compiled_loops_are_their_sources(name: str) -> None:
         compared = rows.copy()
         largest = run(equilibrium._compare)(state.inside, law.pinned, WORK, contacts, problem.natural, compared)
         block, cross = np.zeros((2, 4, 4))
-        run(factors._fill)(problem.coupling.matrices, 2, contacts, field[1:3], block, cross)
+        pairs = state.overlap.pairs
+        run(factors._fill)(problem.coupling.matrices, pairs, 2, contacts, field[1:3], block, cross)
         matrix = block.copy()
         run(factors._eliminate)(cross, contacts.radius, np.full(4, -0.7), np.full(4, 0.3), matrix)
         states = [run(law.next_state)(0.0, True, Surface(2e-6, 0.1, 1e-8), WORK, 1, asperities)]
@@ -216,3 +276,12 @@ def test_mixing_solves_a_linear_iteration_in_as_many_steps_as_unknowns(count: in
         mixing.go(way)
         at = at + way
     np.testing.assert_allclose(at, exact, rtol=1e-8)
+
+
+@pytest.mark.parametrize("periodic", [False, True])
+def test_matrices_of_more_points_take_over_those_of_the_first(periodic: bool) -> None:
+    x, y = np.random.default_rng(3).uniform(0.0, 1.0, (2, 7))
+    patch = Periodic.of(1.3)
+    known = Dense(x[:4], y[:4], patch, periodic)
+    whole = Dense(x, y, patch, periodic)
+    np.testing.assert_array_equal(Dense(x, y, patch, periodic, known).matrices, whole.matrices)

@@ -121,7 +121,7 @@ class Account:
             if math.isnan(conductance):
                 return Step(error=math.inf)
         overlapping = np.zeros(state.t.size, np.bool_)
-        close.mark_overlaps(problem.pairs, np.where(state.inside, state.contacts.radius, 0.0), overlapping)
+        close.mark_overlaps(problem.near.pairs, np.where(state.inside, state.contacts.radius, 0.0), overlapping)
         sizes = math.fsum(np.abs(load).tolist())
         share = float(np.abs(state.load[overlapping]).sum()) / sizes if sizes > 0.0 else 0.0
         tilt = np.hypot(*(state.field[1:3, on] + state.outer[1:3, on]))
@@ -169,7 +169,7 @@ class Account:
 
     def _crowded(self) -> str:
         """Return the warning about contacts that overlap as soon as they are made."""
-        pairs = self._front.problem.pairs
+        pairs = self._front.problem.near.pairs
         made = self._front.made[: self._front.problem.natural.size]
         overlapping = pairs.apart[:, 2] < made[pairs.members].sum(axis=1)
         if not overlapping.any():

@@ -3,7 +3,7 @@
 from collections.abc import Callable
 
 from roughmdr.interaction.contacts import coupled_kernels
-from roughmdr.interaction.jkr import contacts, lone
+from roughmdr.interaction.jkr import coincident, contacts, lone
 from roughmdr.interaction.jkr.interface import JkrKernels
 from roughmdr.kernels.interface import Kernels
 from roughmdr.kernels.profile.interface import ProfileKernels
@@ -24,6 +24,7 @@ def jkr_kernels(kernels: Kernels) -> JkrKernels:
         "lift": contacts.lift,
         "slide": contacts.slide,
         "fill": contacts.fill,
+        "flanks": coincident.flanks,
         "edge": lone.edge,
         "next_state": lone.next_state,
         "lone_load": lone.lone_load,

@@ -8,28 +8,68 @@ moment of a flat punch, 2/3 P a^2. It is felt by another at D as
 which goes to 1/D + (a^2 + b^2)/(6 D^3) and is smooth in the radii. At D = 0 it is 1.535/a for equal radii, below the
 pi/2/a of a contact's own compliance, so that the coupling stays positive definite at any overlap.
 
-Which pairs are taken so is settled for a whole path, from bounds of the radii: an energy must not depend on its past.
+How far a pair is taken so is settled by where the flat stands, not by its past: from the radii about which both
+profiles have risen by the depth of the flat below the summit and the natural depth, near those of contacts alone. There
+the energy is a function of radii and loads. On the way from one to the other its change is not the work of the flat
+alone.
 """
 
 import math
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.special import i0e, i1e
 
 from roughmdr.interaction import close
 from roughmdr.interaction.close import FULL, NONE
-from roughmdr.interaction.green import point_load
+from roughmdr.interaction.interface import Asperities
+from roughmdr.interaction.jkr.interface import JkrKernels, law
 from roughmdr.interaction.neighbours import within_reach
 from roughmdr.numerics.arguments import Floats
-from roughmdr.numerics.jit import njit
 
 _FAR = 1e-6  # D^2/4s^2 beyond the inverse of this has no digits more
 _ROOT = math.sqrt(0.5 * math.pi)
+_RTOL, _LARGEST_STATE, _MAX_ROUNDS = 1e-15, 1e30, 200
+
+
+def flanks(which: NDArray[np.int64], h: float, natural: Floats, asperities: Asperities, out: Floats) -> None:
+    """Fill ``out`` with the radii of asperities that decide on their overlap under a flat at h, and the slopes over h.
+
+    The depth sets in smoothly, from the natural depth before first touch to as much after it.
+    """
+    for number in range(which.size):
+        i = which[number]
+        size, rise = asperities.size[i], asperities.depth[i]
+        if law.pinned:
+            out[0, number], out[1, number] = size, 0.0
+            continue
+        own = law.params_of(asperities.params, i)
+        begun = min(max(1.0 + (asperities.height[i] - h) / natural[i], 0.0), 2.0)  # 1 at first touch
+        depth = 0.25 * begun * begun * natural[i] + max(asperities.height[i] - h - natural[i], 0.0)
+        risen = (natural[i] + depth) / rise
+        low, high = 0.5, 1.0
+        while law.terms(high, own)[2] < risen and high < _LARGEST_STATE:
+            low, high = high, 2.0 * high
+        while law.terms(low, own)[2] > risen and low > 0.0:
+            low, high = 0.5 * low, low
+        t = 0.5 * (low + high)
+        a, da, g, dg, _ = law.terms(t, own)
+        for _ in range(_MAX_ROUNDS):
+            low, high = (t, high) if g < risen else (low, t)
+            step = (risen - g) / dg
+            if not low < t + step < high:
+                step = 0.5 * (low + high) - t
+            if abs(step) <= _RTOL * t:
+                break
+            t += step
+            a, da, g, dg, _ = law.terms(t, own)
+        out[0, number] = size * a
+        out[1, number] = -0.5 * begun * size * da / (rise * dg)
 
 
 def find(at: Floats, bound: Floats, sides: Floats | None) -> close.Pairs:
-    """Return the pairs that overlap where their radii reach ``bound``, with their shares."""
+    """Return the pairs that overlap where their radii reach ``bound``."""
     found = [np.empty((0, 2), np.int64)]
     for i, j, away in within_reach(at, 2.0 * NONE * bound, sides):
         keep = (away < NONE * (bound[i] + bound[j])) & ((bound[j] < bound[i]) | ((bound[j] == bound[i]) & (i < j)))
@@ -39,21 +79,59 @@ def find(at: Floats, bound: Floats, sides: Floats | None) -> close.Pairs:
     if sides is not None:
         apart -= sides * np.rint(apart / sides)
     away = np.hypot(apart[:, 0], apart[:, 1])
-    u = (NONE - away / bound[members].sum(axis=1)) / (NONE - FULL)
-    u = np.clip(u, 0.0, 1.0)
-    return close.Pairs(members, np.column_stack([apart, away]), u * u * (3.0 - 2.0 * u), bound)
+    return close.Pairs(members, np.column_stack([apart, away]), np.zeros(away.size), bound)
 
 
-@njit
-def take_out(pairs: close.Pairs, matrices: Floats) -> None:
-    """Take the expansion of the pairs out of the matrices of G, its slopes and its Laplacian, as far as they share."""
-    for number in range(pairs.share.size):
-        i, j = pairs.members[number]
-        share = pairs.share[number]
-        g, gx, gy, lap = point_load(pairs.apart[number, 0], pairs.apart[number, 1])
-        for row, value, sign in ((0, g, 1.0), (1, gx, -1.0), (2, gy, -1.0), (3, lap, 1.0)):
-            matrices[row, i, j] -= share * value
-            matrices[row, j, i] -= sign * share * value
+class Overlap(NamedTuple):
+    """Pairs that overlap at a separation, with their shares."""
+
+    pairs: close.Pairs
+    rate: Floats
+    """By which their shares fall with the separation."""
+
+
+class Near:
+    """Asperities of which pairs may come to overlap."""
+
+    def __init__(self, kernels: JkrKernels, asperities: Asperities, natural: Floats, pairs: close.Pairs) -> None:
+        self._kernels, self._asperities, self._natural = kernels, asperities, natural
+        self.pairs = pairs
+        self._which, self._place = np.unique(pairs.members, return_inverse=True)
+        self._last: tuple[float, Overlap] | None = None
+
+    def part(self, kept: NDArray[np.int64], asperities: Asperities, natural: Floats) -> "Near":
+        """Return some of them, which are told again."""
+        number = np.full(self._natural.size, -1)
+        number[kept] = np.arange(kept.size)
+        members = number[self.pairs.members]
+        both = (members >= 0).all(axis=1)
+        pairs = close.Pairs(members[both], self.pairs.apart[both], self.pairs.share[both], self.pairs.radius[kept])
+        return Near(self._kernels, asperities, natural, pairs)
+
+    def at(self, separation: float) -> Overlap:
+        """Return the pairs that overlap under a flat at a separation; those told last are remembered."""
+        if self._last is None or self._last[0] != separation:
+            self._last = separation, self._found(separation)
+        return self._last[1]
+
+    def _found(self, separation: float) -> Overlap:
+        pairs, found = self.pairs, np.empty((2, self._which.size))
+        self._kernels.flanks(self._which, separation, self._natural, self._asperities, found)
+        reach, rate = found[:, self._place.reshape(-1, 2)].sum(axis=2)
+        u = (NONE - pairs.apart[:, 2] / reach) / (NONE - FULL)
+        on = np.flatnonzero(u > 0.0)
+        by_reach = np.where(u < 1.0, pairs.apart[:, 2] / reach**2 / (NONE - FULL), 0.0)[on]
+        u = np.minimum(u[on], 1.0)
+        falls = -6.0 * u * (1.0 - u) * by_reach * rate[on]
+        return Overlap(close.Pairs(pairs.members[on], pairs.apart[on], u * u * (3.0 - 2.0 * u), pairs.radius), falls)
+
+
+def take_from_field(pairs: close.Pairs, load: Floats, field: Floats, order: int) -> None:
+    """Take the expansion of the pairs out of a field of point loads, as far as they share."""
+    if pairs.share.size:
+        close.take_from_field(pairs, load, field)
+        if order == 1:
+            field[1:] = 0.0
 
 
 class Bells(NamedTuple):
@@ -67,7 +145,7 @@ class Bells(NamedTuple):
 
 
 def bells(pairs: close.Pairs, radius: Floats) -> Bells:
-    """Return the coupling of the pairs at contact radii; 0 where both are out of contact."""
+    """Return the coupling of pairs that share, at contact radii; 0 where both are out of contact."""
     if not pairs.members.size:
         return Bells(np.zeros(0), np.zeros(0), np.zeros(0))
     a, b = radius[pairs.members].T

@@ -27,9 +27,9 @@ class Problem(NamedTuple):
     kernels: JkrKernels
     asperities: Asperities
     coupling: Dense
-    """Without the expansions of pairs that come to overlap."""
-    pairs: close.Pairs
-    """Those that come to overlap."""
+    """With the expansions of all pairs."""
+    near: coincident.Near
+    """The pairs that may come to overlap."""
     order: int
     work: float
     """w/(E* L)."""
@@ -38,14 +38,9 @@ class Problem(NamedTuple):
 
     def part(self, kept: NDArray[np.int64]) -> "Problem":
         """Return the problem of some of the asperities, alone."""
-        number = np.full(self.natural.size, -1)
-        number[kept] = np.arange(kept.size)
-        members = number[self.pairs.members]
-        both = (members >= 0).all(axis=1)
-        apart, share = self.pairs.apart[both], self.pairs.share[both]
-        pairs = close.Pairs(members[both], apart, share, self.pairs.radius[kept])
-        few = Asperities(*(each[kept] for each in self.asperities))
-        return self._replace(asperities=few, coupling=self.coupling.part(kept), pairs=pairs, natural=self.natural[kept])
+        few, natural = Asperities(*(each[kept] for each in self.asperities)), self.natural[kept]
+        near = self.near.part(kept, few, natural)
+        return self._replace(asperities=few, coupling=self.coupling.part(kept), near=near, natural=natural)
 
 
 class Step(NamedTuple):
@@ -77,6 +72,7 @@ class State(NamedTuple):
     with its derivatives, as ``field``, and the part of de/da by overlap."""
     field: Floats
     contacts: Contacts
+    overlap: coincident.Overlap
     bells: coincident.Bells
     potential: Floats
     """Displacement of each asperity."""
@@ -114,19 +110,21 @@ def _compare(inside: Bools, pinned: bool, work: float, contacts: Contacts, natur
     return largest
 
 
-def field_of(problem: Problem, load: Floats) -> Floats:
+def field_of(problem: Problem, load: Floats, overlap: coincident.Overlap) -> Floats:
     """Return the displacement by loads with its derivatives, [row, asperity], but for overlapping pairs."""
     if problem.order == 2:
-        return problem.coupling.field(load)
-    field = np.zeros((4, load.size))
-    field[0] = problem.coupling.potential(load)
+        field = problem.coupling.field(load)
+    else:
+        field = np.zeros((4, load.size))
+        field[0] = problem.coupling.potential(load)
+    coincident.take_from_field(overlap.pairs, load, field, problem.order)
     return field
 
 
 def evaluate(problem: Problem, inside: Bools, t: Floats, load: Floats, separation: float, outer: Floats) -> State:
     """Return the contacts with their residuals."""
-    pairs, coupling = problem.pairs, problem.coupling
-    field = field_of(problem, load)
+    overlap, coupling = problem.near.at(separation), problem.coupling
+    pairs, field = overlap.pairs, field_of(problem, load, overlap)
     contacts = Contacts(*np.zeros((len(Contacts._fields), t.size)))
     whole = field + outer[:4]
     problem.kernels.fill(inside, t, load, whole, problem.work, problem.asperities, contacts)
@@ -143,12 +141,12 @@ def evaluate(problem: Problem, inside: Bools, t: Floats, load: Floats, separatio
     if problem.order == 2:
         moments = 0.25 * contacts.second_moment, contacts.tilting * whole[1], contacts.tilting * whole[2]
         potential = by_loads + coupling.of_moments(*moments)
+        close.take_from_moments(pairs, *moments, potential)
     rows = np.array([edge, edge, problem.asperities.height - separation - potential - outer[0]])
     error = _compare(inside, problem.kernels.pinned, problem.work, contacts, problem.natural, rows)
     release, edge, gap = rows
-    return State(
-        inside, t, load, separation, outer, field, contacts, found, potential, by_loads, release, edge, gap, error
-    )
+    totals = potential, by_loads, release, edge, gap, error
+    return State(inside, t, load, separation, outer, field, contacts, overlap, found, *totals)
 
 
 def alone(problem: Problem, state: State) -> tuple[Problem, State]:

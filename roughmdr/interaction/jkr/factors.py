@@ -11,6 +11,8 @@ from typing import NamedTuple
 import numpy as np
 from scipy.linalg.lapack import dgetrf, dgetrs, dsytrf
 
+from roughmdr.interaction.close import Pairs
+from roughmdr.interaction.green import point_load
 from roughmdr.interaction.jkr.contacts import Contacts
 from roughmdr.interaction.jkr.equilibrium import Problem, State, Step
 from roughmdr.numerics.arguments import Floats
@@ -30,20 +32,45 @@ class Lead(NamedTuple):
 
 
 @njit
-def _fill(matrices: Floats, order: int, contacts: Contacts, slopes: Floats, block: Floats, cross: Floats) -> None:
-    """Fill what the gaps of contacts change by the loads of others, the other way round, and by their radii."""
-    a, lift, by_tilt, by_radius = contacts.radius, contacts.lift, contacts.edge_by_tilt, contacts.moment_by_radius
-    for i in range(a.size):
-        for j in range(a.size):
-            block[i, j] = matrices[0, i, j]
-            cross[i, j] = 0.0
-            if order == 2:
-                x, y, laplacian = matrices[1, i, j], matrices[2, i, j], matrices[3, i, j]
-                sliding = x * slopes[0, j] + y * slopes[1, j]
-                back = -x * slopes[0, i] - y * slopes[1, i]
-                block[i, j] += (a[i] * a[i] + a[j] * a[j]) / 6.0 * laplacian + sliding * lift[j] + back * lift[i]
-                cross[i, j] = -0.25 * by_radius[j] * laplacian - sliding * by_tilt[j] / math.pi
-        block[i, i] += 0.5 * math.pi / a[i]
+def _felt(
+    i: int, j: int, terms: tuple[float, float, float, float], order: int, contacts: Contacts, slopes: Floats
+) -> tuple[float, float]:
+    """Return what the gap of i changes by the load of j, and by its radius; ``terms`` are G, its slopes and Laplacian.
+
+    Both are in proportion to those.
+    """
+    g, x, y, laplacian = terms
+    if order == 1:
+        return g, 0.0
+    squares = contacts.radius[i] * contacts.radius[i] + contacts.radius[j] * contacts.radius[j]
+    sliding = x * slopes[0, j] + y * slopes[1, j]
+    back = -x * slopes[0, i] - y * slopes[1, i]
+    by_load = g + (squares / 6.0 * laplacian + sliding * contacts.lift[j] + back * contacts.lift[i])
+    by_radius = -0.25 * contacts.moment_by_radius[j] * laplacian - sliding * contacts.edge_by_tilt[j] / math.pi
+    return by_load, by_radius
+
+
+@njit
+def _fill(
+    matrices: Floats, pairs: Pairs, order: int, contacts: Contacts, slopes: Floats, block: Floats, cross: Floats
+) -> None:
+    """Fill what the gaps of contacts change by the loads of others, the other way round, and by their radii.
+
+    The expansion of pairs is left out, as far as they share.
+    """
+    for i in range(contacts.radius.size):
+        for j in range(contacts.radius.size):
+            terms = matrices[0, i, j], matrices[1, i, j], matrices[2, i, j], matrices[3, i, j]
+            block[i, j], cross[i, j] = _felt(i, j, terms, order, contacts, slopes)
+        block[i, i] += 0.5 * math.pi / contacts.radius[i]
+    for number in range(pairs.share.size):
+        x, y, share = pairs.apart[number, 0], pairs.apart[number, 1], pairs.share[number]
+        for way in range(2):
+            i, j = pairs.members[number, way], pairs.members[number, 1 - way]
+            by_load, by_radius = _felt(i, j, point_load(x, y), order, contacts, slopes)
+            block[i, j] -= share * by_load
+            cross[i, j] -= share * by_radius
+            x, y = -x, -y
 
 
 @njit
@@ -67,14 +94,15 @@ class Factors:
         self._by_load, self.slope = contacts.edge_by_load, contacts.slope
         self._block, self._cross = np.empty((2, size, size))
         slopes = state.field[1:3] + state.outer[1:3]
-        _fill(problem.coupling.matrices, problem.order, contacts, slopes, self._block, self._cross)
-        self._pairs = _Overlapping(problem, state)
-        i, j = problem.pairs.members.T
+        pairs = state.overlap.pairs
+        _fill(problem.coupling.matrices, pairs, problem.order, contacts, slopes, self._block, self._cross)
+        self._pairs = _Overlapping(state)
+        i, j = pairs.members.T
         self._block[i, j] += state.bells.value
         self._block[j, i] += state.bells.value
         matrix = self._block
         if not self.pinned:
-            self._own = edge_by_radius(problem, state)
+            self._own = edge_by_radius(state)
             ratio, near = self._own / self._by_load, self._pairs
             matrix = self._block * ratio
             if near.members.size:
@@ -182,8 +210,8 @@ class Factors:
 class _Overlapping:
     """Matrices of the contacts that overlap others: what those do to each other."""
 
-    def __init__(self, problem: Problem, state: State) -> None:
-        self.members, places = np.unique(problem.pairs.members, return_inverse=True)
+    def __init__(self, state: State) -> None:
+        self.members, places = np.unique(state.overlap.pairs.members, return_inverse=True)
         if not self.members.size:
             return
         i, j = places.reshape(-1, 2).T
@@ -193,7 +221,7 @@ class _Overlapping:
         for one, other in ((i, j), (j, i)):
             np.add.at(self.cross, (one, other), -2.0 / 3.0 * bells.by_spread * a[other] * p[other])
             np.add.at(self.cross, (one, one), -2.0 / 3.0 * bells.by_spread * a[one] * p[other])
-        self.own = np.diag(edge_by_radius(problem, state)[self.members])
+        self.own = np.diag(edge_by_radius(state)[self.members])
         """de/da by radii."""
         between = -4.0 / 9.0 * math.pi * p[i] * p[j] * bells.curvature * a[i] * a[j]
         self.own[i, j] += between
@@ -203,12 +231,11 @@ class _Overlapping:
         self.ratio = np.linalg.solve(self.by_load, self.own)
 
 
-def edge_by_radius(problem: Problem, state: State) -> Floats:
+def edge_by_radius(state: State) -> Floats:
     """Return the derivative of de/da of each contact over its own radius."""
-    found = state.contacts.edge_by_radius.copy()
-    if problem.pairs.members.size:
+    found, members = state.contacts.edge_by_radius.copy(), state.overlap.pairs.members.T
+    if members.size:
         a, p, bells = state.contacts.radius, state.load, state.bells
-        members = problem.pairs.members.T
         for first in members:
             bend = bells.by_spread + 2.0 / 3.0 * a[first] ** 2 * bells.curvature
             np.add.at(found, first, -2.0 / 3.0 * math.pi * p[members[0]] * p[members[1]] * bend)

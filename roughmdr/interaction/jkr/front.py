@@ -7,7 +7,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roughmdr.errors import OutOfRange
-from roughmdr.interaction import close
 from roughmdr.interaction.dense import Dense
 from roughmdr.interaction.green import below_all
 from roughmdr.interaction.interface import Asperities
@@ -22,7 +21,8 @@ from roughmdr.interaction.jkr.lone import Surface
 from roughmdr.interaction.placed_asperities import Placed
 from roughmdr.numerics.arguments import Floats
 
-_GROWTH = 1.3  # of the number of asperities that are looked at, where one that was left out may touch
+_GROWTH = 1.3  # of the number of asperities that are looked at, where more may touch
+_FURTHER = 1.0  # of its depth by which the flat may come closer before pairs that may overlap are looked for again
 _MARGIN = 0.25  # of the natural depth, within which asperities out of contact are looked at
 _CLEAR = 0.1  # of the margin that asperities outside the window must keep
 _MOST_AVALANCHES = 10  # in a step, over the number of asperities near contact: more lead nowhere
@@ -46,9 +46,9 @@ class Piece(NamedTuple):
 
 
 class Front:
-    """The highest asperities of an ensemble, under a flat that comes as close as ``lowest``."""
+    """The highest asperities of an ensemble, as many as a flat may have touched where it has been."""
 
-    def __init__(self, placed: Placed, effective_modulus: float, work: float, lowest: float) -> None:
+    def __init__(self, placed: Placed, effective_modulus: float, work: float) -> None:
         self.placed, self._kernels = placed, jkr_kernels(placed.law)
         self.work = work / effective_modulus / placed.length
         """Work of adhesion over E* and the side of the patch."""
@@ -56,7 +56,9 @@ class Front:
             raise OutOfRange(f"work over modulus is {work / effective_modulus:g} m; it is not representable")
         self._asperities = placed.asperities(placed.height.size)
         self._natural, self.made = _lone_scales(self._kernels, self._asperities, self.work)
-        self.bring_down(lowest)
+        self._lowest = math.inf  # separation down to which the pairs are known that may overlap
+        self._coupling: Dense | None = None
+        self._take(0)
 
     @property
     def top(self) -> float:
@@ -68,11 +70,15 @@ class Front:
         """The largest natural depth."""
         return float(self._natural.max(initial=0.0))
 
-    def bring_down(self, lowest: float) -> None:
-        """Have the asperities that a flat may touch which comes as close as that, and the pairs that overlap there."""
-        self.lowest = lowest
-        reach = lowest - self.depth
-        self._take(int(np.searchsorted(-self.placed.height, -reach, side="right")))
+    def _bring_down(self, state: State, h: float) -> State:
+        """Have the asperities that a flat at h may touch, and the pairs that may overlap; return the state with all."""
+        needed = int(np.searchsorted(-self.placed.height, self.depth - h, side="right"))
+        have, nearer = self.problem.natural.size, h < self._lowest
+        if nearer:
+            self._lowest = h - _FURTHER * max(self.top - h, self.depth)
+        if nearer or have < needed:
+            self._take(have if have >= needed else math.ceil(_GROWTH * needed))
+        return self._extended(state)
 
     def _take(self, count: int) -> None:
         """Have the highest asperities."""
@@ -82,19 +88,19 @@ class Front:
             self.next_height = float(placed.height[count])
         at, few = placed.at[:count], Asperities(*(each[:count] for each in self._asperities))
         x, y = np.ascontiguousarray(at.T)
-        coupling = Dense(x, y, placed.patch, interaction.boundary == "periodic")
-        depth = np.maximum(few.height - self.lowest, 0.0)
-        bound = np.array([_radius(kernels, few, i, float(depth[i]), self.work) for i in range(count)]).reshape(count)
-        self.pairs: close.Pairs = coincident.find(at, bound, placed.sides)
-        coincident.take_out(self.pairs, coupling.matrices)
-        self.problem = Problem(kernels, few, coupling, self.pairs, interaction.order, self.work, self._natural[:count])
+        coupling = self._coupling = Dense(x, y, placed.patch, interaction.boundary == "periodic", self._coupling)
+        natural, reach = self._natural[:count], np.empty((2, count))
+        kernels.flanks(np.arange(count), self._lowest, natural, few, reach)
+        near = coincident.Near(kernels, few, natural, coincident.find(at, reach[0], placed.sides))
+        self.problem = Problem(kernels, few, coupling, near, interaction.order, self.work, natural)
         self.kept = np.arange(0)
         self.window = self.problem.part(self.kept)
 
-    def _extend(self, state: State) -> State:
-        """Return the state with more asperities, none of which is in contact."""
-        self._take(math.ceil(_GROWTH * state.t.size) + 1)
+    def _extended(self, state: State) -> State:
+        """Return the state with all asperities there are now, the last of which are not in contact."""
         more = self.problem.natural.size - state.t.size
+        if not more:
+            return state
         inside = np.append(state.inside, np.zeros(more, np.bool_))
         t, load = (np.append(each, np.zeros(more)) for each in (state.t, state.load))
         new = evaluate(self.problem, inside, t, load, state.separation, none(self.problem))
@@ -119,9 +125,11 @@ class Front:
 
         NoEquilibriumError where no equilibrium is found.
         """
+        state = self._bring_down(state, h)
         new, pieces = self._advance(state, h)
         while not self._complete(new):
-            state = self._extend(state)
+            self._take(math.ceil(_GROWTH * state.t.size) + 1)
+            state = self._extended(state)
             new, pieces = self._advance(state, h)
         return new, pieces
 
@@ -164,18 +172,18 @@ class Front:
 
 def _lone_scales(kernels: JkrKernels, asperities: Asperities, work: float) -> tuple[Floats, Floats]:
     """Return the stretch at the edge of each contact as it is made alone, and its radius."""
-    made = np.array([_radius(kernels, asperities, i, 0.0, work) for i in range(asperities.height.size)])
+    made = np.array([_radius(kernels, asperities, i, work) for i in range(asperities.height.size)])
     if not ((made > 0.0) & np.isfinite(made)).all():
         raise OutOfRange("the contact of an asperity under adhesion is not representable")
     return np.sqrt(2.0 * math.pi * work * made), made
 
 
-def _radius(kernels: JkrKernels, asperities: Asperities, i: int, depth: float, work: float) -> float:
-    """Return the radius of a contact alone as it is made at an indentation."""
+def _radius(kernels: JkrKernels, asperities: Asperities, i: int, work: float) -> float:
+    """Return the radius of a contact alone as it is made."""
     size = float(asperities.size[i])
     if kernels.pinned:
         return size
-    t = kernels.next_state(0.0, True, Surface(depth), work, i, asperities)
+    t = kernels.next_state(0.0, True, Surface(0.0), work, i, asperities)
     return size * kernels.terms(t, kernels.params_of(asperities.params, i))[0]
 
 

@@ -15,6 +15,7 @@ class JkrKernels(CoupledKernels):
     """(t, size, depth, params) -> lambda."""
     slide: Callable[..., tuple[float, float, float]]
     fill: Callable[..., None]
+    flanks: Callable[..., None]
     edge: Callable[..., tuple[float, float, bool]]
     next_state: Callable[..., float]
     lone_load: Callable[..., float]

@@ -10,7 +10,7 @@ from roughmdr.interaction.jkr.events import Event, advance
 from roughmdr.interaction.jkr.lone import Surface
 from roughmdr.interaction.jkr.newton import at_rest
 
-_MAX_JUMPS = 100  # times the number of asperities
+_MAX_JUMPS = 10  # times the number of asperities
 
 
 class Avalanche(NamedTuple):
@@ -47,7 +47,7 @@ def jump(problem: Problem, state: State, event: Event) -> State:
     if found > 0.0:
         load[i] = kernels.lone_load(found, surface, problem.work, i, problem.asperities)
     outer = state.outer.copy()
-    outer[1:4] += field_of(problem, state.load - load)[1:]
+    outer[1:4] += field_of(problem, state.load - load, state.overlap)[1:]
     new = evaluate(problem, inside, t, load, state.separation, outer)
     outer[0] += np.where(inside, new.gap, state.potential - new.potential)
     outer[4] -= 2.0 * new.release * new.edge

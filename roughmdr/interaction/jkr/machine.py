@@ -41,8 +41,6 @@ class Hanging:
         self._clear = clear
         self._state, self._flown = front.parted(front.top), True
         self._slope = 0.0
-        self.lowest = math.inf
-        """The least separation so far."""
 
     def follow(self, leg: Leg) -> None:
         """Follow a leg, with its demand in SI, and account for its steps."""
@@ -51,7 +49,6 @@ class Hanging:
             if demand != last:
                 self._go(climb, climb.sign * demand / self._unit)
             last = demand
-            self.lowest = min(self.lowest, self._state.separation)
             self._account.stand(self._state, self._place(demand), rises=leg.rises)
 
     def _place(self, demand: float) -> float:

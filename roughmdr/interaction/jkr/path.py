@@ -30,7 +30,7 @@ def solve_path(
     closest, or at step number ``at``. Errors as ``interaction.solve``.
     """
     placed = Placed(ensemble, effective_modulus, interaction)
-    front = Front(placed, effective_modulus, work, float(separation.min()) / placed.length)
+    front = Front(placed, effective_modulus, work)
     rises = np.diff(separation, prepend=np.inf) > 0.0
     account = Account(front, effective_modulus, ensemble.height.size, names, rises=bool(rises.any()), at=at)
     state = front.parted(max(float(separation[0]) / placed.length, front.top + _ABOVE))

@@ -7,7 +7,9 @@ import math
 
 import numpy as np
 
-from roughmdr.interaction.jkr.equilibrium import Drive, Problem, State, Step
+from roughmdr.interaction import close
+from roughmdr.interaction.jkr import coincident
+from roughmdr.interaction.jkr.equilibrium import Drive, Problem, State, Step, field_of
 from roughmdr.interaction.jkr.factors import Factors, Lead
 from roughmdr.interaction.jkr.mixing import Mixing
 from roughmdr.numerics.arguments import Floats
@@ -34,11 +36,12 @@ class Tangent:
         edge = c.edge_by_radius * step.radius + c.edge_by_load * load + outer[4]
         gap = c.edge_by_load / math.pi * step.radius - 0.5 * math.pi / a * load
         gap -= self.drive.separation * step.along + outer[0]
-        if problem.order == 1:
-            gap -= problem.coupling.potential(load)
-        else:
-            field = problem.coupling.field(load)
-            gap -= field[0]
+        pairs, field = state.overlap.pairs, field_of(problem, load, state.overlap)
+        closer, sharing = -self.drive.separation * step.along, pairs._replace(share=state.overlap.rate)
+        if closer != 0.0:
+            coincident.take_from_field(sharing, closer * state.load, field, problem.order)
+        gap -= field[0]
+        if problem.order == 2:
             field = field + outer[:4]
             whole = state.field + state.outer[:4]
             bent, tilt = 0.25 * field[3], field[1:3]
@@ -47,19 +50,26 @@ class Tangent:
             moment = c.moment_by_radius * step.radius + 2.0 / 3.0 * a * a * load - 32.0 / (45.0 * math.pi) * a**5 * bent
             turn = c.edge_by_tilt / math.pi * step.radius + c.lift * load
             moments = 0.25 * moment, c.tilting * tilt[0] + turn * whole[1], c.tilting * tilt[1] + turn * whole[2]
-            gap -= problem.coupling.of_moments(*moments) + 2.0 / 3.0 * a * a * bent - c.lift * along
-        if problem.pairs.members.size:
-            self._add_bells(step, edge, gap)
+            potential = problem.coupling.of_moments(*moments)
+            close.take_from_moments(pairs, *moments, potential)
+            if closer != 0.0:
+                standing = 0.25 * closer * c.second_moment, closer * c.tilting * whole[1], closer * c.tilting * whole[2]
+                close.take_from_moments(sharing, *standing, potential)
+            gap -= potential + 2.0 / 3.0 * a * a * bent - c.lift * along
+        if pairs.share.size:
+            self._add_bells(step, closer, edge, gap)
         return edge, gap
 
-    def _add_bells(self, step: Step, edge: Floats, gap: Floats) -> None:
-        """Add what the contacts of overlapping pairs do to each other."""
-        i, j = self.problem.pairs.members.T
+    def _add_bells(self, step: Step, closer: float, edge: Floats, gap: Floats) -> None:
+        """Add what the contacts of overlapping pairs do to each other; ``closer`` by how much the flat comes."""
+        pairs, rate = self.state.overlap
+        i, j = pairs.members.T
         a, p, bells, radius, load = self.state.contacts.radius, self.state.load, self.state.bells, *step[:2]
-        spread = 2.0 / 3.0 * (a[i] * radius[i] + a[j] * radius[j])
-        np.add.at(gap, i, -(bells.value * load[j] + bells.by_spread * spread * p[j]))
-        np.add.at(gap, j, -(bells.value * load[i] + bells.by_spread * spread * p[i]))
-        product = load[i] * p[j] + p[i] * load[j]
+        spread, grown = 2.0 / 3.0 * (a[i] * radius[i] + a[j] * radius[j]), closer * rate / pairs.share
+        change = bells.by_spread * spread + bells.value * grown
+        np.add.at(gap, i, -(bells.value * load[j] + change * p[j]))
+        np.add.at(gap, j, -(bells.value * load[i] + change * p[i]))
+        product = load[i] * p[j] + p[i] * load[j] + p[i] * p[j] * grown
         for one in (i, j):
             change = product * bells.by_spread * a[one]
             change = change + p[i] * p[j] * (bells.by_spread * radius[one] + bells.curvature * spread * a[one])
