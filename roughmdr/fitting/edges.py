@@ -14,7 +14,7 @@ from roughmdr.fitting.search import Found
 from roughmdr.numerics.arguments import Floats
 
 _CERTAIN = 25.0  # least increase of the sum of squares beyond an edge, over the variance of the noise: five deviations
-_BISECTIONS = 50  # of the multiple of a direction
+_BISECTIONS = 50  # halvings of the range of the multiple of a direction
 _LARGEST = 1e9  # such multiple, over the least that may be long enough
 
 

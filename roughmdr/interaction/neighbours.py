@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from roughmdr.numerics.arguments import Floats
 
 _PAIRS_AT_A_TIME = 2.0**22
-_BEYOND_ALL = 1.01  # times the diagonal of all points: two of them lie on it, but for rounding
+_BEYOND_ALL = 1.01  # reach over the diagonal of all points: two of them lie on it, but for rounding
 _AT_ONCE = 2.0**12  # pairs so few that one class is found sooner than several
 
 

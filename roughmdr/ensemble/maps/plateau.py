@@ -21,16 +21,16 @@ _EXACT, _ROUNDED = 0.01, 1e-4
 _COARSER = (1, 2, 4, 8)  # points along the side of a block whose mean is taken: noise falls, curvature rises
 _FEWEST, _FEWEST_NOISY = 16, 50  # flat points, or blocks, of a plateau; points of one whose noise is to be told
 _MOST = 0.3  # share of flat points that must lie on the plateau: on rough maps they lie at any height
-_RISING = 0.1  # of the points beside a plateau, those above it over those below it at most
+_RISING = 0.1  # points beside a plateau and above it, over those below it, at most
 _BESIDE = 3  # points around a plateau that count as beside it
 _WHITE = 0.3  # correlation of signs of noise at neighbouring points at most; true roughness of tops has more
 _MEDIAN_OF_NORMAL = 0.6745  # median magnitude of normal numbers, over their standard deviation
 _MOST_COMPARED = 2**16  # points whose curvatures tell the usual one
 _WITHIN = 3.0  # distance of points of a plateau from its plane at most, over its thickness
-_SAMPLE, _ITERATIONS = 500, 20  # of a fit by least absolute deviations: points, and reweighted least squares
+_SAMPLE, _ITERATIONS = 500, 20  # points and rounds of a fit by least absolute deviations
 _ABOVE = 4.0  # weight of a deviation above, over that of one below: the fit is that of the quantile of 80 %
-_LEAST_RESIDUAL = 1e-3  # over the curvature of flat points: residuals below it weigh the same
-_ROUNDING = 1e-13  # of the largest height: curvatures below it are rounding errors
+_LEAST_RESIDUAL = 1e-3  # residual over the curvature of flat points, below which all weigh the same
+_ROUNDING = 1e-13  # curvature over the largest height, below which it is a rounding error
 
 
 class Plateau(NamedTuple):

@@ -27,7 +27,7 @@ _WORDS = {
     "bit2nm": "bit2nm",
     "undefined": "nodata(?:_value)?",
 }
-"""What a header may say: numbers of a row and rows, sides, spacings, units, factors to heights, what is undefined."""
+"""Words for numbers of a row and of rows, sides, spacings, units, factors to heights, the mark of undefined points."""
 
 _LINES = {
     name: re.compile(
@@ -50,7 +50,7 @@ class Said(NamedTuple):
     line: int
     text: str
     number: float  # NaN where it says a word
-    unit: str | None  # of the number
+    unit: str | None  # its unit, where it is a number
 
     @property
     def points(self) -> int:

@@ -21,8 +21,8 @@ from roughmdr.interaction.jkr.lone import Surface
 from roughmdr.interaction.placed_asperities import Placed
 from roughmdr.numerics.arguments import Floats
 
-_GROWTH = 1.3  # of the number of asperities that are looked at, where more may touch
-_FURTHER = 1.0  # of its depth by which the flat may come closer before pairs that may overlap are looked for again
+_GROWTH = 1.3  # number of asperities that are looked at, over the one before, where more may touch
+_FURTHER = 1.0  # way down, over the depth of the flat, after which pairs that may overlap are looked for again
 _MARGIN = 0.25  # of the natural depth, within which asperities out of contact are looked at
 _CLEAR = 0.1  # of the margin that asperities outside the window must keep
 _MOST_AVALANCHES = 10  # in a step, over the number of asperities near contact: more lead nowhere

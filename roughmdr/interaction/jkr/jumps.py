@@ -10,7 +10,7 @@ from roughmdr.interaction.jkr.events import Event, advance
 from roughmdr.interaction.jkr.lone import Surface
 from roughmdr.interaction.jkr.newton import at_rest
 
-_MAX_JUMPS = 10  # times the number of asperities
+_MAX_JUMPS = 10  # jumps of an avalanche over the number of asperities: more repeat themselves without rest
 
 
 class Avalanche(NamedTuple):
