@@ -11,6 +11,7 @@ import numpy as np
 from roughmdr.batch.plan import Cell, Plan
 from roughmdr.elements.refine import LARGEST_GRID, first_points
 from roughmdr.kernels.adhesion import Adhesion
+from roughmdr.loading.machine import legs_of
 from roughmdr.scene import Scene
 from roughmdr.shapes import SHAPES, TabledShape
 from roughmdr.variables import LOSSES
@@ -48,10 +49,9 @@ _CURVED_TABLES, _CURVED_STEP, _CURVED_NODE = 5e-2, 1.5e-2, 5e-2
 _SOUGHT, _SOUGHT_PAIRS, _SOUGHT_ADHERING = 2.5, 17.0, 3.6
 """How many times as long a path takes whose separations are sought: 2.3 to 2.8 (2000 and 20 000 paraboloids), 14 to 20
 (100 to 1600 in pairs, under a pressure), 3.6 (median of 150 ensembles of 2 to 8 adhesive pairs)."""
-_JUMP, _JUMP_VISITS = 3e-5, 14.0
-"""Seconds for each contact whose loss on a machine is located, and visits that it takes of each other contact: 12
-evaluations of those that are left, half of all on average, each twice as long as in a sum, and a part of the sum. So of
-spheres 0.3 s for 370 contacts, 3.7 s for 1500; of paraboloids 0.04 s for 750."""
+_JUMP, _JUMP_VISITS, _JUMP_VISITS_PROFILE = 3e-5, 4.0, 24.0
+"""Seconds for each contact whose jump on a machine is located, and visits that it takes of each other contact: of
+paraboloids 1.6 to 5.4 (2000 to 7600 contacts), of spheres 23 to 27 (190 to 2700), on each leg."""
 _HEIGHTS = 1000  # asperities that are drawn to tell which share touches
 _MEAN_FIELD_PASSES = 6  # times as long as independent asperities, by Newton's method with all steps at once
 # Asperities that feel each other in pairs: to begin, each separation of the path (which is solved once), and for each
@@ -113,16 +113,17 @@ def _search_factor(cell: Cell, estimator: str) -> float:
 
 def locates_jumps(cell: Cell, estimator: str) -> bool:
     """Return whether jumps of the flat are located, since the energy that they lose is asked for."""
-    pulled = cell.machine is not None and not cell.fixed_grips and bool((np.diff(cell.machine.demand) > 0.0).any())
-    alone = estimator != "expected" and not cell.scene.needs_positions
-    return pulled and alone and cell.scene.work > 0.0 and not LOSSES.isdisjoint(cell.scene.output.variables)
+    alone = estimator != "expected" and not cell.scene.needs_positions and cell.scene.work > 0.0
+    return alone and not cell.fixed_grips and not LOSSES.isdisjoint(cell.scene.output.variables)
 
 
 def _jump_seconds(cell: Cell) -> float:
-    """Return about how long it takes to locate the jumps by which all contacts are lost [s]."""
+    """Return about how long it takes to locate the jumps by which all contacts are made, and lost [s]."""
+    assert cell.machine is not None
     scene, contacts = cell.scene, touching(cell)
     visit = _visit_seconds(scene.adhesion_model, scene.asperities.shape_name)
-    return contacts * (_JUMP + _JUMP_VISITS * contacts * visit)
+    visits = _JUMP_VISITS if scene.asperities.shape_name == "paraboloid" else _JUMP_VISITS_PROFILE
+    return len(legs_of(cell.machine.demand)) * contacts * (_JUMP + visits * contacts * visit)
 
 
 def touching(cell: Cell) -> float:

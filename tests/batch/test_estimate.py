@@ -85,7 +85,7 @@ def test_separations_that_are_sought_take_longer(adhesion: dict[str, Any] | None
 
 
 def test_jumps_that_are_located_take_longer() -> None:
-    """The more contacts there are, where a spring and not the flat itself lets them jump on the way back."""
+    """The more contacts there are, where a spring and not the flat itself lets them jump, on each way."""
     jkr, lost = {"model": "jkr", "work": "50 mJ/m^2"}, ["force", "dissipated_energy"]
 
     def foreseen(stop: str, *, unload: bool = True, variables: list[str] = lost, **spring: str) -> float:
@@ -99,7 +99,7 @@ def test_jumps_that_are_located_take_longer() -> None:
     spring = {"machine_stiffness": "1 kN/m"}
     few, many = foreseen("1 um", **spring), foreseen("-5 um", **spring)
     assert 0.0 < few < 0.3 * many  # 160 and 1000 contacts: each is summed over while the others are lost
-    assert foreseen("-5 um", unload=False, **spring) == 0.0
+    assert 0.4 * many < foreseen("-5 um", unload=False, **spring) < 0.6 * many
     assert foreseen("-5 um") == 0.0
     assert foreseen("-5 um", variables=["force"], **spring) == 0.0
 
