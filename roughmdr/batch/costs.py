@@ -22,7 +22,7 @@ _RUN, _DRAW = 1.5e-4, 2e-7  # to begin a run; to draw and sort an asperity
 _STRATIFY = 8e-4  # to begin stratified draws
 _VISIT, _VISIT_PROFILE, _VISIT_DUGDALE = 5e-9, 4e-8, 8e-8  # of an asperity at a step
 _VISIT_DUGDALE_PROFILE, _VISIT_DUGDALE_TABLE = 9e-7, 2e-5
-_ENERGETIC = 3.0  # factor on a visit where energies are asked for: 2.1 (spheres) to 3.6 (paraboloids)
+_ENERGETIC = 10.0  # factor on a visit where energies are asked for: 6 to 17 (spheres, truncated cones); paraboloids 1.1
 _FIRST_RULE, _MORE_NODES = 8, 1.5  # with the first rule's nodes to this power, an expected law takes longer
 
 
@@ -98,7 +98,8 @@ def along_seconds(cell: Cell, estimator: str) -> float:
     if cell.scene.needs_positions:
         return begin + section.expected_count * _DRAW + paired_seconds(cell)
     energetic = adhesion.work > 0.0 and not {"energy", *LOSSES}.isdisjoint(cell.scene.output.variables)
-    visit = _visit_seconds(adhesion, section.shape_name) * (_ENERGETIC if energetic else 1.0)
+    visit = _visit_seconds(adhesion, section.shape_name)
+    visit *= _ENERGETIC if energetic and section.shape_name != "paraboloid" else 1.0
     return begin + section.expected_count * (_DRAW + visit * steps)
 
 
