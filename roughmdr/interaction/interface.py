@@ -21,7 +21,7 @@ class Asperities(NamedTuple):
     size: Floats
     """Natural radii."""
     params: Floats
-    """As ``Kernels.prepare`` returns them."""
+    """Rows that ``Kernels.prepare`` returns."""
 
 
 class Contacts(NamedTuple):
@@ -71,13 +71,13 @@ class CoupledKernels(Kernels):
     """(t, ratio, params) -> the state with the load of t on a surface whose curvature adds ratio a^2 to g; negative,
     minus the radius, where the contact lies within the flat of a tip."""
     newton_state: Callable[..., float]
-    """As ``curved_state``, by iteration, where that has a closed form for some."""
+    """Like ``curved_state``, by iteration, where that has a closed form for some."""
     loaded_state: Callable[..., float]
     """(load, t, ratio, params) -> the state with a load on such a surface, from a guess t."""
     top: Callable[..., float]
     """(t, tilt, ratio, params) -> the radius from t on where dg/da is the tilt, over natural size."""
     bisected_top: Callable[..., float]
-    """As ``top``, by bisection."""
+    """Like ``top``, by bisection."""
     slid: Callable[..., Slid]
     """(t, a, dg/da, tilt, ratio, depth, size, params) -> a contact on a tilted surface."""
     edge_curvature: Callable[..., float]
