@@ -76,8 +76,9 @@ def fit(
 
     References
     ----------
-    Intervals without ``force_error``: J. G. MacKinnon, H. White (1985), Journal of Econometrics 29, 305 (HC3); R. M.
-    Bell, D. F. McCaffrey (2002), Survey Methodology 28, 169 (degrees of freedom of Student's t).
+    Intervals without ``force_error``: H.-G. Mueller, U. Stadtmueller (1987), Annals of Statistics 15, 610 (uneven noise
+    by the residuals of neighbours); R. M. Bell, D. F. McCaffrey (2002), Survey Methodology 28, 169 (degrees of freedom
+    of Student's t).
 
     Examples
     --------

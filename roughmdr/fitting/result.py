@@ -15,8 +15,8 @@ from roughmdr.storage.result_file import FIT, provenance
 
 _POINT, _PARAMETER = ("point",), ("parameter",)
 _REFERENCES = (
-    "MacKinnon and White (1985), Journal of Econometrics 29, 305: the covariance HC3; Bell and McCaffrey (2002), "
-    "Survey Methodology 28, 169: its degrees of freedom"
+    "Mueller and Stadtmueller (1987), Annals of Statistics 15, 610: uneven noise by the residuals of neighbours; Bell "
+    "and McCaffrey (2002), Survey Methodology 28, 169: its degrees of freedom"
 )
 _NAMES = {"force": "force", "pressure": "pressure, force over nominal area"}
 _CONTROLS = {"separation": "separation", "remote": "position of the far end of the spring"}
@@ -73,7 +73,7 @@ def assemble(model: Model, found: Found, known: Uncertainty, seconds: float, com
         "references": _REFERENCES,
         "measured": curve.origin,
         "scene": scene.toml,
-        "intervals": "95 %, by the stated errors" if curve.error is not None else "95 %, HC3 and Student's t",
+        "intervals": "95 %, by the stated errors" if curve.error is not None else "95 %, residuals nearby, Student's t",
         "trust": dict(trust_lines(law.model_error.named, interaction=interaction))["trust"],
     }
     if warnings:

@@ -14,6 +14,8 @@ _LEVEL = 0.95
 _TOGETHER = 0.99  # probability of the parameters, all together, of which the edges between jumps allow some
 _LEAST_SLOPE = 1e-6  # least slope over the largest: what changes the law by less is not known at all
 _LEAST_FREEDOM = 1e-6  # of a step: one that fits whatever it measures says nothing of the noise
+_NEIGHBOURS = 2  # steps to each side whose residuals, with its own, tell the noise of a step
+_LEAST_NOISE = 1e-6  # least variance of the noise over the largest, where degrees of freedom are counted
 _UNKNOWN = 10.0  # standard error of x along a combination that is not known at all, however small the noise
 
 
@@ -63,11 +65,10 @@ def correlation_of(influence: Floats) -> Floats:
 def uncertainty(model: Model, found: Found) -> Uncertainty:
     """Return the uncertainty at the parameters of least squares.
 
-    With a standard deviation of each load, it is that which they cause, normal. Without, it is the sandwich HC3 of the
-    residuals, for noise that is constant, proportional or otherwise uneven, with Student's t of as many degrees of
-    freedom as the points have that decide; with HC2 89 of 100 intervals hold the modulus where noise is proportional,
-    though 96 rather than 100 where few points decide. Intervals end where a jump would miss a measured load: see
-    ``edges``.
+    With a standard deviation of each load, it is that which they cause, normal. Without, the variance of the noise of
+    each step is that of the residuals near it, for noise that is constant, proportional or otherwise uneven, with
+    Student's t of as many degrees of freedom as the steps have that decide. Intervals end where a jump would miss a
+    measured load: see ``edges``.
     """
     from scipy.stats import norm, t
 
@@ -84,9 +85,8 @@ def uncertainty(model: Model, found: Found) -> Uncertainty:
     inverse = right.T @ (left / np.maximum(sizes, _LEAST_SLOPE * sizes[0])).T / lengths[:, None]
     probability = 0.5 * (1.0 + _LEVEL)
     if model.curve.error is None:
-        rest = np.maximum(1.0 - np.square(left).sum(axis=1), _LEAST_FREEDOM)
-        influence = inverse * (found.deviations / rest)
-        quantile = np.asarray(t.ppf(probability, _degrees_of_freedom(inverse / rest, left)))
+        influence, freedom = by_residuals(inverse, left, found.deviations)
+        quantile = np.asarray(t.ppf(probability, freedom))
     else:
         influence, quantile = inverse, np.full(found.x.size, norm.ppf(probability))
     unknown = right[sizes < _LEAST_SLOPE * sizes[0]] / lengths
@@ -132,17 +132,30 @@ def _check_enough(model: Model, slopes: Floats) -> None:
         )
 
 
-def _degrees_of_freedom(weights: Floats, left: Floats) -> Floats:
-    """Return those of the variance of each parameter by squares of residuals, after Bell and McCaffrey (2002).
+def by_residuals(inverse: Floats, left: Floats, residuals: Floats) -> tuple[Floats, Floats]:
+    """Return how far noise, as the residuals near each step tell it, moves each parameter, and its degrees of freedom.
 
-    They make the variance of noise that is even as uncertain as it is: (tr M)^2/tr M^2, M = w (1 - H) w.
+    ``inverse`` [parameter, step] is how far a deviation moves each; ``left`` [step, parameter] are orthonormal vectors
+    that span the slopes. Degrees of freedom make the sum of squares that is each variance as uncertain as it is, after
+    Bell and McCaffrey (2002): (tr M)^2/tr M^2, M = w (1 - H) w, where w^2 is the share of each residual in it.
     """
-    squares = np.square(weights) / np.square(weights).max(axis=1, keepdims=True)
     leverage = np.square(left).sum(axis=1)
-    overlap = np.einsum("ks,sa,sb->kab", squares, left, left)
-    trace = squares @ (1.0 - leverage)
-    trace_of_square = np.square(squares) @ (1.0 - 2.0 * leverage) + np.square(overlap).sum(axis=(1, 2))
-    return np.asarray(np.maximum(np.square(trace) / trace_of_square, 1.0))
+    rest = _summed_nearby(np.maximum(1.0 - leverage, _LEAST_FREEDOM))
+    variance = _summed_nearby(np.square(residuals)) / rest
+    shares = _summed_nearby(np.square(inverse) / rest)
+    shares *= np.maximum(variance, _LEAST_NOISE * variance.max()) if variance.any() else 1.0
+    shares /= shares.max(axis=1, keepdims=True)
+    overlap = np.einsum("ks,sa,sb->kab", shares, left, left)
+    trace = shares @ (1.0 - leverage)
+    trace_of_square = np.square(shares) @ (1.0 - 2.0 * leverage) + np.square(overlap).sum(axis=(1, 2))
+    return inverse * np.sqrt(variance), np.maximum(np.square(trace) / trace_of_square, 1.0)
+
+
+def _summed_nearby(steps: Floats) -> Floats:
+    """Return the sum over each step and its neighbours, along the last axis."""
+    from scipy.ndimage import convolve1d
+
+    return np.asarray(convolve1d(steps, np.ones(2 * _NEIGHBOURS + 1), mode="constant"))
 
 
 def _shift(model: Model, found: Found, inverse: Floats) -> Floats | None:
