@@ -207,7 +207,7 @@ def test_an_offset_far_away_is_shown_to_its_error() -> None:
 def test_intervals_hold_the_true_values(kind: str, stated: bool) -> None:
     """40 draws of each combination with each noise, from nanometres to millimetres: 92 to 98 % of the intervals.
 
-    Among them, those of a JKR offset hold it oftener: they end where a jump would pass a step, and no true value does.
+    A parameter has 120 to 360 of them, by whose chance it may be one standard deviation above.
     """
     hits = dict[str, list[bool]]()
     for free, noise, seed in product(COMBINATIONS[kind], NOISES, range(40)):
@@ -222,3 +222,4 @@ def test_intervals_hold_the_true_values(kind: str, stated: bool) -> None:
     shares = {key: 100.0 * float(np.mean(each)) for key, each in hits.items()}
     assert 92.0 <= 100.0 * float(np.mean(np.concatenate(list(hits.values())))) <= 98.0, shares
     assert min(shares.values()) >= 92.0, shares
+    assert max(shares.values()) <= 99.0, shares
