@@ -168,9 +168,10 @@ def _trust(known: dict[str, Floats], coefficients: Coefficients | None, interact
     parts = {name: float(known[name].max(initial=0.0)) for name in PARTS}
     place, rest, beyond = "along the whole path", "", known["trusted_separation"]
     if beyond.size:
-        whole = _percent(min(sum(parts.values()), 1.0))
+        whole = sum(parts.values())
+        there = f"within {_percent(whole)}" if whole < 1.0 else "it may be off by all of it or more"
         left_out = "asperities interact, which this scene leaves out" if interaction is None else "it is farther off"
-        rest = f"; below it {left_out}: within {whole} at closest approach"
+        rest = f"; below it {left_out}: {there} at closest approach"
         parts["interaction_error"] = float(interaction_error(np.array(TRUSTED_FRACTION), coefficients or ASPERITIES))
         contact = f" (contact {_percent(TRUSTED_FRACTION)})" if coefficients else ""
         place = f"down to h = {format_quantity(float(beyond.max()), 'm')}{contact}"

@@ -164,6 +164,7 @@ def test_of_a_crowd_the_sign_and_the_remedy_are_told(tmp_path: Path) -> None:
         told = rm.info(made)
         share = f"{100.0 * float(made.overlap_fraction[0]):.2g} % of the contacts overlap"
         assert words in told
+        assert ("it may be off by all of it or more at closest approach" in told) == (number == 0)
         assert share in told
         assert 'model = "pairwise" counts it, beyond = "boundary_elements" where contacts overlap' in told
         warned = float(made.interaction_error[0]) > 0.36
