@@ -23,7 +23,7 @@ from roughmdr.kernels.interface import Columns
 from roughmdr.loading.path import LoadingPath
 from roughmdr.loading.pull_off import prepare as prepare_pull_off
 from roughmdr.loading.staircase import no_memory
-from roughmdr.model_error import Assumptions, Givens
+from roughmdr.model_error import Assumptions, Givens, crowd_warnings
 from roughmdr.model_error.interaction import overlap_share, poisson_overlap
 from roughmdr.numerics.arguments import Floats
 from roughmdr.shapes import SHAPES
@@ -96,7 +96,8 @@ def compute(
         total, names, path.separation, givens, assumptions, visits, validity.tabor, adhesion.model
     )
     pull_off = pull_off_of(law, ensemble.height, columns, effective_modulus, adhesion, path, total[totals.FORCE])
-    warnings = (*ensemble.warnings, *([_UNCOUPLED_HILLS] if ensemble.origin == "hills" else []))
+    crowded = crowd_warnings(assumptions.neighbours_error, total[totals.AREA] / area)
+    warnings = (*ensemble.warnings, *([_UNCOUPLED_HILLS] if ensemble.origin == "hills" else []), *crowded)
     effective = effective_number(force)
     return result._replace(warnings=warnings, pull_off=pull_off, effective_contacts=effective)
 
@@ -112,7 +113,12 @@ def check_asked(ensemble: Ensemble, names: list[str], adhesion: Adhesion, intera
 
 
 def _overlap(ensemble: Ensemble, radius: Floats) -> float:
-    """Return the share of contacts that reach into a neighbour's, from their radii [m]; NaN where it is not known."""
+    """Return the share of contacts that reach into a neighbour's, from their radii [m].
+
+    It is NaN where it is not known, and of hills, which are parts of one surface.
+    """
+    if ensemble.origin == "hills":
+        return math.nan
     touching = radius > 0.0
     contact_radius = radius[touching]
     if not contact_radius.size:

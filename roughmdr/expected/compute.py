@@ -34,7 +34,7 @@ from roughmdr.interaction.mean_field import Shift, coupling_of, mean_inverse_dis
 from roughmdr.interaction.settings import Interaction
 from roughmdr.kernels.adhesion import Adhesion
 from roughmdr.loading.staircase import no_memory
-from roughmdr.model_error import Assumptions, Givens
+from roughmdr.model_error import Assumptions, Givens, crowd_warnings
 from roughmdr.model_error.distances import FEW, error_of_few
 from roughmdr.model_error.interaction import poisson_overlap
 from roughmdr.numerics.arguments import Floats, Ints
@@ -113,7 +113,8 @@ def compute(
         overlap=overlap,
         neighbours_error=_neighbours_error(source, total) if interaction is None else None,
     )
-    warnings = _warnings(float(total[ERROR].max()) / largest if largest > 0.0 else 0.0, error_of_others)
+    crowded = crowd_warnings(assumptions.neighbours_error, total[AREA] / nominal_area)
+    warnings = (*_warnings(float(total[ERROR].max()) / largest if largest > 0.0 else 0.0, error_of_others), *crowded)
     law = LoadSeparation.of(total, names, path.separation, givens, assumptions, products, validity.tabor, model)
     return law._replace(warnings=warnings, pull_off=pull_off_of(problem, split, chosen, total[FORCE]))
 

@@ -6,7 +6,7 @@ likely cause is.
 """
 
 from roughmdr.model_error.parts import PARTS, Assumptions, ModelError
-from roughmdr.model_error.refusal import Givens, check_contact_fraction, fraction_warnings
+from roughmdr.model_error.refusal import Givens, check_contact_fraction, crowd_warnings, fraction_warnings
 
 __all__ = [
     "PARTS",
@@ -14,5 +14,6 @@ __all__ = [
     "Givens",
     "ModelError",
     "check_contact_fraction",
+    "crowd_warnings",
     "fraction_warnings",
 ]

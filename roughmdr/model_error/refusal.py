@@ -6,6 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 from roughmdr.errors import TooMuchContact
+from roughmdr.model_error.interaction import interaction_error
 from roughmdr.numerics.arguments import Floats
 from roughmdr.schema.units import format_quantity
 
@@ -13,6 +14,10 @@ LARGE_FRACTION = 0.05
 """Contact fraction above which there is a warning: the force is off by 19 % there, typically, at most by some 36 %."""
 OVERLAPPED_FRACTION = 0.3
 """Contact fraction above which most contacts overlap, so that the sum of their areas is no contact area any more."""
+
+_CROWDED = 0.36
+"""Error of the force by the distances of asperities above which there is a warning: that of even cover at
+``LARGE_FRACTION``."""
 
 _SOFT = 1e3  # Pa: softer than gels, so that a prefix of the unit may be missing
 _STICKY = 5.0  # J/m^2: stronger than clean metals
@@ -76,3 +81,18 @@ def fraction_warnings(largest: float) -> list[str]:
             f"independent, which they are not there (warned of above {LARGE_FRACTION:g})"
         ]
     return []
+
+
+def crowd_warnings(error: Floats | None, contact_fraction: Floats) -> list[str]:
+    """Return the warning of independent asperities that crowd; none where their force is not much too high.
+
+    ``error`` [1] is that by their distances at each step, None where it is not known. The text is the same for all
+    realisations.
+    """
+    if error is None or not (error > np.maximum(interaction_error(contact_fraction), _CROWDED)).any():
+        return []
+    return [
+        "independent asperities are near to each other, and contacts that overlap count more than once: the force is "
+        f"too high, by more than {_CROWDED:g} of the true one (interaction_error and overlap_fraction tell): ask for "
+        '[interaction] model = "pairwise"'
+    ]

@@ -26,8 +26,8 @@ from roughmdr.variables import LATERAL
 
 _TOLD = 0.01  # parts of the model error below this are not told
 _TINY = 1e-6
-_LEAST, _MOST = 0.9, 1.0 + 1e-9
-"""Range of an error over that of its contact fraction within which it was estimated from the contact fraction."""
+_ROUNDING = 1e-9
+"""Relative difference up to which an error is that of its contact fraction."""
 _NO_AREA = "not known: the asperities have no nominal area, so that nothing tells how near they are to each other"
 
 _OPENINGS = {
@@ -35,7 +35,7 @@ _OPENINGS = {
     "mean_field": "asperities feel each other's mean displacement only: force at given separation off by",
 }
 _NAMES = {"model_error", *PARTS, "largest_contact_fraction", "trusted_separation", "overlap_fraction"}
-_BY_FRACTION = {"interaction_error", "largest_contact_fraction"}
+_BY_FRACTION = {"interaction_error", "largest_contact_fraction", "overlap_fraction"}
 _AT_PULL_OFF = "pull_off_contact_fraction"
 
 Numbers = Mapping[str, Any]
@@ -87,7 +87,7 @@ def trust_lines(
         yield "trust", _trust_coupled(known, summits)
         return
     if coefficients is None:
-        yield "model error", _neighbours(float(known["interaction_error"].max()))
+        yield "model error", _neighbours(known)
     else:
         errors = [f"{_interaction(float(fraction.max()), coefficients)} {place}" for fraction, place in places]
         yield "model error", f"{_OPENINGS[interaction]} {errors[0]}"
@@ -150,13 +150,16 @@ def _pull_off_error(tension: Floats) -> str:
     return f"the pull-off force itself by {_percent(TENSION * root)} typically, up to {_percent(MOST_TENSION * root)}"
 
 
-def _neighbours(error: float) -> str:
-    """Return the error that the distances of independent asperities tell."""
+def _neighbours(known: dict[str, Floats]) -> str:
+    """Return the error that the distances of independent asperities tell, and how many of them overlap."""
+    error, overlap = (float(known[name].max(initial=0.0)) for name in ("interaction_error", "overlap_fraction"))
     if error == 0.0:
         return "a lone asperity feels no other: no error by interaction"
+    by = f"up to {_percent(error)}" if error < 1.0 else "100 % or more of the true one"
+    twice = f"; {_percent(overlap)} of the contacts overlap and count more than once" if overlap >= _TOLD else ""
     return (
         "asperities are independent, where each lowers the surface under those near it: force at given separation too "
-        f"high by up to {_percent(error)}"
+        f"high by {by}{twice}"
     )
 
 
@@ -165,9 +168,10 @@ def _trust(known: dict[str, Floats], coefficients: Coefficients | None, interact
     parts = {name: float(known[name].max(initial=0.0)) for name in PARTS}
     place, rest, beyond = "along the whole path", "", known["trusted_separation"]
     if beyond.size:
-        whole = _percent(min(sum(parts.values()), 1.0))
+        whole = sum(parts.values())
+        there = f"within {_percent(whole)}" if whole < 1.0 else "it may be off by all of it or more"
         left_out = "asperities interact, which this scene leaves out" if interaction is None else "it is farther off"
-        rest = f"; below it {left_out}: within {whole} at closest approach"
+        rest = f"; below it {left_out}: {there} at closest approach"
         parts["interaction_error"] = float(interaction_error(np.array(TRUSTED_FRACTION), coefficients or ASPERITIES))
         contact = f" (contact {_percent(TRUSTED_FRACTION)})" if coefficients else ""
         place = f"down to h = {format_quantity(float(beyond.max()), 'm')}{contact}"
@@ -230,9 +234,9 @@ def _advice(known: dict[str, Floats], coefficients: Coefficients | None) -> str:
 def _coefficients(known: dict[str, Floats]) -> Coefficients | None:
     """Return the coefficients that the error by interaction was estimated with; None of one by distances."""
     error, fraction = known["interaction_error"].max(), known["largest_contact_fraction"].max()
-    kinds = (ASPERITIES, SUMMITS, HILLS)
-    by_fraction = [float(interaction_error(fraction, kind)) for kind in kinds]
-    return next((kind for kind, of in zip(kinds, by_fraction, strict=True) if _LEAST * of <= error <= _MOST * of), None)
+    kinds = (ASPERITIES, SUMMITS) if known["overlap_fraction"].size else (HILLS,)  # of hills it has no meaning
+    by_fraction = {kind: float(interaction_error(fraction, kind)) for kind in kinds}
+    return next((kind for kind, of in by_fraction.items() if math.isclose(error, of, rel_tol=_ROUNDING)), None)
 
 
 def _interaction(fraction: float, coefficients: Coefficients) -> str:

@@ -1,6 +1,7 @@
 """The error of independent asperities that their number and distances tell: few of them, and crowds."""
 
 import math
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -120,10 +121,18 @@ def crowd(share: float, seed: int) -> xr.Dataset:
     return placed(x, y, 2e-9 * rng.standard_normal(40), 1e-3, shape="capped_paraboloid", **radii)
 
 
-@pytest.mark.parametrize(("share", "seed"), [(0.5, 1), (0.6, 3), (0.7, 5)])
-def test_the_force_of_a_crowd_is_too_high_by_what_is_stated(share: float, seed: int) -> None:
+def near_pairs(count: int, seed: int) -> xr.Dataset:
+    """The same on all of the patch, but for ``count`` that stand about half a contact radius from another one."""
+    asperities, rng = crowd(1.0, seed), np.random.default_rng(seed)
+    for axis in "xy":
+        at = asperities[axis].values
+        at[:count] = (at[count : 2 * count] + 5e-6 * rng.standard_normal(count)) % 1e-3
+    return asperities
+
+
+@pytest.mark.parametrize("asperities", [crowd(0.5, 1), crowd(0.6, 3), crowd(0.7, 5), near_pairs(10, 7)])
+def test_the_force_of_a_crowd_is_too_high_by_what_is_stated(asperities: xr.Dataset) -> None:
     """Overlapping contacts and crowded ones are counted twice; the bound is that of boundary elements."""
-    asperities = crowd(share, seed)
     top = float(asperities.height.max())
     h = top - np.array([2e-8, 1e-7])
     alone = rm.load_separation(
@@ -138,6 +147,28 @@ def test_the_force_of_a_crowd_is_too_high_by_what_is_stated(share: float, seed: 
     assert (true > 0.05).all()
     assert (true <= stated).all()
     assert (stated <= 3.0 * true).all()
+
+
+def test_of_a_crowd_the_sign_and_the_remedy_are_told(tmp_path: Path) -> None:
+    """Above 100 % it is taken for no hills; hills have no overlap."""
+    for number, (asperities, words) in enumerate(
+        [(crowd(0.35, 1), "too high by 100 % or more of the true one"), (near_pairs(10, 7), "too high by up to ")]
+    ):
+        asperities.to_netcdf(tmp_path / f"{number}.nc")
+        table = scene(
+            adhesion=None, asperities={"source": "file", "file": str(tmp_path / f"{number}.nc")},
+            path={"separation": [float(asperities.height.max()) - 1.1e-7]}, output={"variables": ["force"]},
+            batch={"realizations": 1},
+        )  # fmt: skip
+        made = rm.run(table)
+        told = rm.info(made)
+        share = f"{100.0 * float(made.overlap_fraction[0]):.2g} % of the contacts overlap"
+        assert words in told
+        assert ("it may be off by all of it or more at closest approach" in told) == (number == 0)
+        assert share in told
+        assert 'model = "pairwise" counts it, beyond = "boundary_elements" where contacts overlap' in told
+        warned = float(made.interaction_error[0]) > 0.36
+        assert ("the force is too high, by more than 0.36" in made.attrs.get("warnings", "")) == warned
 
 
 @settings(deadline=None, max_examples=30)
