@@ -36,3 +36,7 @@ class Step(NamedTuple):
     """The part of it that a machine loses."""
     conductance: float = 0.0
     """The conductance radius."""
+    early: float = 0.0
+    """Pull-off forces of asperities out of contact that attraction with a range may have pulled on, each alone."""
+    held: float = 0.0
+    """Those of asperities in contact."""
