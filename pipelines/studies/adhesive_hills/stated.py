@@ -1,5 +1,6 @@
 """The stated error of JKR hills against boundary elements, on maps its constants are from and on others."""
 
+import math
 from typing import NamedTuple
 
 import numpy as np
@@ -11,7 +12,8 @@ from studies.hills.maps import SIDE, MapCase
 from studies.study import named, table
 
 SETS = ("calibration", "validation")
-_FEWEST, _MOST = 144, 432  # points of a grid a side, on which the cohesive zone is about a cell or larger
+_FEWEST, _MOST = 144, 324
+"""Points of a grid a side: as many as resolve the cohesive zone; the Tabor number is at most one that they resolve."""
 _SEEN = 0.02  # of the largest force: a smaller error of a step is not asked for
 FACTOR = 3.0
 """The stated error over the largest one that is no more than it should be."""
@@ -26,7 +28,7 @@ def drawn(seed: int) -> Case:
     return Case(surface, work, preload, _FEWEST, tabor=float(np.exp(rng.uniform(0.0, np.log(4.0)))))
 
 
-MAPS = {"calibration": [*CASES, *map(drawn, range(21, 33))], "validation": list(map(drawn, range(41, 65)))}
+MAPS = {"calibration": [*CASES, *map(drawn, range(21, 33))], "validation": list(map(drawn, range(41, 61)))}
 FEW = {"calibration": QUICK[:1], "validation": [drawn(61)._replace(steps=QUICK[0].steps)]}
 
 
@@ -57,7 +59,10 @@ def measure_stated(maps: dict[str, list[Case]]) -> xr.Dataset:
 def _errors(case: Case) -> Stated:
     """Return the errors of a map."""
     adhesive = Adhesive(case)
-    separation, points = adhesive.path(), float(np.clip(SIDE / adhesive.cohesive_zone, _FEWEST, _MOST))
+    resolved = math.sqrt(adhesive.cohesive_zone * _MOST / SIDE)
+    if resolved < 1.0:
+        adhesive = Adhesive(case._replace(tabor=resolved * case.tabor))
+    separation, points = adhesive.path(), max(_FEWEST, SIDE / adhesive.cohesive_zone)
     true = adhesive.by_elements(separation, points, adhesive.reach).force
     hills = adhesive.found(adhesive.hills, separation, interaction="pairwise", range=adhesive.reach)
     return compare(true, hills["force"].to_numpy(), hills["model_error_curve"].to_numpy())

@@ -176,11 +176,13 @@ class Account:
 
         R is that of the paraboloid that jumps on with as large a contact.
         """
-        made = self._front.made[: state.t.size]
-        alone = 1.5 * math.pi * np.sqrt(self._front.work * made**3 / (2.0 * math.pi))
-        near = ~state.inside & (state.gap > -self._reach * self._front.problem.natural)
+        front, count = self._front, state.t.size
+        alone = 1.5 * math.pi * np.sqrt(front.work * front.made**3 / (2.0 * math.pi))
+        gap, inside = front.placed.height - state.separation, np.zeros(alone.size, np.bool_)
+        gap[:count], inside[:count] = state.gap, state.inside
+        near = ~inside & (gap > -self._reach * front.natural)
         unit = self._modulus * self._length**2
-        return unit * math.fsum(alone[near].tolist()), unit * math.fsum(alone[state.inside].tolist())
+        return unit * math.fsum(alone[near].tolist()), unit * math.fsum(alone[inside].tolist())
 
     def _crowded(self) -> str:
         """Return the warning about contacts that overlap as soon as they are made."""
