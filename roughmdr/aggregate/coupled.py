@@ -207,8 +207,8 @@ def _adhering(ensemble: Ensemble, separation: Floats, interaction: Interaction, 
     error = found.error
     if ensemble.origin == "hills":
         largest = float(np.nanmax(np.abs(found.total[totals.FORCE]), initial=0.0))
-        early, held = np.array([(step.early, step.held) for step in along.steps]).reshape(-1, 2).T
-        error = np.minimum(error + adhesive_hills_error(early, held, largest), 1.0)
+        doubted, held = np.array([(step.doubted, step.held) for step in along.steps]).reshape(-1, 2).T
+        error = np.minimum(error + adhesive_hills_error(doubted, held, largest), 1.0)
     return found._replace(
         error=error,
         warnings=(along.crowded,) if along.crowded else (),

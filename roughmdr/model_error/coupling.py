@@ -54,14 +54,15 @@ def coupling_error(
     return np.minimum(error + summits_error(contact_fraction, origin), 1.0)
 
 
-def adhesive_hills_error(early: Floats, held: Floats, largest: float) -> Floats:
+def adhesive_hills_error(doubted: Floats, held: Floats, largest: float) -> Floats:
     """Return what JKR adds to the error of hills at each step, over the largest force [1]; 1 where that is 0.
 
-    ``early`` are the pull-off forces of hills that JKR has out of contact and that attraction with a range may have
-    pulled into it, ``held`` those of hills in contact, shape (n,) each; ``largest`` is the largest force [N].
+    ``doubted`` are the pull-off forces of hills that JKR has out of contact and that attraction with a range may have
+    pulled into it, and of those whose contacts overlap, of which it does not know how they merge; ``held`` are those of
+    other contacts, shape (n,) each; ``largest`` is the largest force [N].
     """
-    doubted = early + _HELD * held
-    return np.where(doubted < largest, doubted / (largest or 1.0), (doubted > 0.0).astype(float))
+    off = doubted + _HELD * held
+    return np.where(off < largest, off / (largest or 1.0), (off > 0.0).astype(float))
 
 
 def foreseen_error(contact_fraction: float, overlap: float) -> float:

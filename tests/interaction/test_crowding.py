@@ -162,6 +162,25 @@ def test_the_error_of_an_adhesive_hill_goes_by_whether_it_may_have_jumped_on(
     np.testing.assert_allclose(stiff.model_error_curve, error, rtol=1e-3)
 
 
+def test_overlapping_contacts_of_adhesive_hills_are_in_doubt_as_a_whole() -> None:
+    """Contacts of a radius of 5 cm: 6 cm apart they overlap, 40 cm apart they do not."""
+
+    def error(apart: float) -> tuple[float, float]:
+        pair = ensemble([0.0, 0.0], area=1.0, radius=1e3, x=[0.3, 0.3 + apart], y=[0.5, 0.5])
+        pair.attrs["asperity_model"] = "hills"
+        law = rm.load_separation(
+            pair, separation=[-2e-6], effective_modulus=1e9, work=0.01, interaction={"model": "pairwise"}
+        )
+        assert float(law.contact_count[0]) == 2.0
+        alone = 2.0 * 1.5 * np.pi * 0.01 * 1e3 / abs(float(law.force[0]))
+        return (float(law.model_error) - 0.06 - float(law.adhesion_range_error)) / alone, alone
+
+    (far, _), (near, alone) = error(0.4), error(0.06)
+    assert alone < 0.9
+    assert far == pytest.approx(0.13, rel=1e-3)
+    assert near == pytest.approx(1.0, rel=1e-3)
+
+
 def test_of_hills_nothing_is_asked_for_that_their_error_does_not_use(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(solve, "crowding", None)
     pair = ensemble([0.0, -1e-6], area=1.0, radius=1e3, x=[0.2, 0.7], y=[0.5, 0.5])

@@ -28,7 +28,10 @@ def drawn(seed: int) -> Case:
     return Case(surface, work, preload, _FEWEST, tabor=float(np.exp(rng.uniform(0.0, np.log(4.0)))))
 
 
-MAPS = {"calibration": [*CASES, *map(drawn, range(21, 33))], "validation": list(map(drawn, range(41, 61)))}
+MAPS = {
+    "calibration": [*CASES, *map(drawn, (*range(21, 33), *range(41, 61)))],
+    "validation": list(map(drawn, range(71, 91))),
+}
 FEW = {"calibration": QUICK[:1], "validation": [drawn(61)._replace(steps=QUICK[0].steps)]}
 
 

@@ -4,6 +4,7 @@ import math
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from roughmdr.interaction import close
 from roughmdr.interaction.conductance import Punches, total_conductance
@@ -115,9 +116,11 @@ class Account:
     def _totals(self, state: State) -> Step:
         problem, length = self._front.problem, self._length
         lost = self.dissipated + self.machine_dissipated, self.machine_dissipated
-        early, held = self._pull_offs(state) if self._reach > 0.0 else (0.0, 0.0)
+        overlapping = np.zeros(state.t.size, np.bool_)
+        close.mark_overlaps(problem.near.pairs, np.where(state.inside, state.contacts.radius, 0.0), overlapping)
+        doubted, held = self._pull_offs(state, overlapping) if self._reach > 0.0 else (0.0, 0.0)
         if not state.inside.any():
-            return Step(dissipated=lost[0], by_machine=lost[1], early=early)
+            return Step(dissipated=lost[0], by_machine=lost[1], doubted=doubted)
         on = np.flatnonzero(state.inside)
         radius, load = state.contacts.radius[on], state.load[on]
         unit = math.pi * self._modulus * length * length
@@ -128,8 +131,6 @@ class Account:
             conductance = length * self._conductance(state)
             if math.isnan(conductance):
                 return Step(error=math.inf)
-        overlapping = np.zeros(state.t.size, np.bool_)
-        close.mark_overlaps(problem.near.pairs, np.where(state.inside, state.contacts.radius, 0.0), overlapping)
         sizes = math.fsum(np.abs(load).tolist())
         share = float(np.abs(state.load[overlapping]).sum()) / sizes if sizes > 0.0 else 0.0
         tilt = np.hypot(*(state.field[1:3, on] + state.outer[1:3, on]))
@@ -145,7 +146,7 @@ class Account:
             self.energy_unit * energy(problem, state) if "energy" in self._names else 0.0,
             *lost,
             conductance,
-            early,
+            doubted,
             held,
         )
 
@@ -171,8 +172,8 @@ class Account:
         force = math.pi * self._modulus * length * length * tension.force
         return PullOff(force, length * tension.separation, float(tension.contacts), area)
 
-    def _pull_offs(self, state: State) -> tuple[float, float]:
-        """Return the sums of 3/2 pi w R of those that may have jumped on, and of the contacts.
+    def _pull_offs(self, state: State, overlapping: NDArray[np.bool_]) -> tuple[float, float]:
+        """Return the sums of 3/2 pi w R of those that may have jumped on or overlap, and of other contacts.
 
         R is that of the paraboloid that jumps on with as large a contact.
         """
@@ -180,9 +181,10 @@ class Account:
         alone = 1.5 * math.pi * np.sqrt(front.work * front.made**3 / (2.0 * math.pi))
         gap, inside = front.placed.height - state.separation, np.zeros(alone.size, np.bool_)
         gap[:count], inside[:count] = state.gap, state.inside
-        near = ~inside & (gap > -self._reach * front.natural)
+        doubted = ~inside & (gap > -self._reach * front.natural)
+        doubted[:count] |= overlapping
         unit = self._modulus * self._length**2
-        return unit * math.fsum(alone[near].tolist()), unit * math.fsum(alone[inside].tolist())
+        return unit * math.fsum(alone[doubted].tolist()), unit * math.fsum(alone[inside & ~doubted].tolist())
 
     def _crowded(self) -> str:
         """Return the warning about contacts that overlap as soon as they are made."""
