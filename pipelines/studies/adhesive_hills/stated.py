@@ -72,7 +72,9 @@ def _errors(case: Case) -> Stated:
 
 
 def compare(true: Floats, force: Floats, stated: Floats) -> Stated:
-    """Return the errors of forces of which at each step an error over the largest is stated."""
+    """Return the errors of forces of which at each step an error over the largest is stated; NaN is left out."""
+    known = np.isfinite(force)
+    true, force, stated = true[known], force[known], stated[known]
     off = np.minimum(np.abs(force - true) / np.abs(force).max(), 1.0)
     seen = off > _SEEN
     inside = float(np.mean(off[seen] <= stated[seen])) if seen.any() else 1.0
