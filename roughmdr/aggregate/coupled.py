@@ -9,14 +9,14 @@ from numpy.typing import NDArray
 
 from roughmdr.aggregate import totals
 from roughmdr.aggregate.law import LoadSeparation, effective_number
-from roughmdr.aggregate.tabor import jkr_validity
+from roughmdr.aggregate.tabor import JkrValidity, jkr_validity
 from roughmdr.ensemble.ensemble import Ensemble
 from roughmdr.errors import SceneError
 from roughmdr.interaction.settings import Interaction
 from roughmdr.interaction.totals import CROWDING
 from roughmdr.kernels.adhesion import Adhesion
 from roughmdr.loading.machine import MachinePath
-from roughmdr.loading.path import LoadingPath, branches
+from roughmdr.loading.path import LoadingPath
 from roughmdr.loading.pull_off import PullOff
 from roughmdr.model_error import Assumptions, Givens
 from roughmdr.model_error.conductance import coupled_conductance_error
@@ -77,9 +77,10 @@ def law_of_coupled(
 ) -> LoadSeparation:
     """Return the law of asperities that feel each other in pairs; SceneError where a variable is not to be had."""
     separation = path.separation
-    judged = _judged(ensemble, names)
-    found = sum_coupled(ensemble, separation, effective_modulus, interaction, judged, adhesion.work)
-    return _law(ensemble, found, separation, effective_modulus, adhesion, names)
+    validity = jkr_validity(ensemble.shape, ensemble.spread, ensemble.nondimensional(), effective_modulus, adhesion)
+    judged, reach = _judged(ensemble, names), _reach(ensemble, validity)
+    found = sum_coupled(ensemble, separation, effective_modulus, interaction, judged, adhesion.work, reach)
+    return _law(ensemble, found, separation, effective_modulus, adhesion, names, validity)
 
 
 def law_on_machine(
@@ -97,10 +98,16 @@ def law_on_machine(
     """
     from roughmdr.interaction.jkr.machine_path import solve_on_machine
 
-    judged = set(_judged(ensemble, names))
-    along = solve_on_machine(ensemble, path, effective_modulus, adhesion.work, interaction, judged, clear)
+    validity = jkr_validity(ensemble.shape, ensemble.spread, ensemble.nondimensional(), effective_modulus, adhesion)
+    judged, reach = set(_judged(ensemble, names)), _reach(ensemble, validity)
+    along = solve_on_machine(ensemble, path, effective_modulus, adhesion.work, interaction, judged, clear, reach)
     found = _adhering(ensemble, along.separation, interaction, along)
-    return _law(ensemble, found, along.separation, effective_modulus, adhesion, names), along.separation
+    return _law(ensemble, found, along.separation, effective_modulus, adhesion, names, validity), along.separation
+
+
+def _reach(ensemble: Ensemble, validity: JkrValidity) -> float:
+    """Return the reach of attraction that the error of hills needs; 0 of others."""
+    return validity.reach if ensemble.origin == "hills" else 0.0
 
 
 def _judged(ensemble: Ensemble, names: list[str]) -> list[str]:
@@ -115,12 +122,12 @@ def _law(
     effective_modulus: float,
     adhesion: Adhesion,
     names: list[str],
+    validity: JkrValidity,
 ) -> LoadSeparation:
     """Return the law with these totals at separations [m]."""
     work, spread = adhesion.work, ensemble.spread
     area = math.nan if ensemble.nominal_area is None else ensemble.nominal_area
     givens = Givens(effective_modulus, work, spread, area, float(found.radius.max(initial=0.0)))
-    validity = jkr_validity(ensemble.shape, spread, ensemble.nondimensional(), effective_modulus, adhesion)
     assumptions = Assumptions(
         ensemble.validity_limits(found.radius),
         np.count_nonzero(found.radius) * validity.contact_error if work > 0.0 else 0.0,
@@ -155,12 +162,13 @@ def sum_coupled(
     interaction: Interaction,
     names: list[str],
     work: float,
+    reach: float = 0.0,
 ) -> CoupledTotals:
-    """Return the totals of an ensemble at separations [m], w [J/m2]; SceneError where a variable is not to be had."""
+    """Return totals at separations [m], w [J/m2], ``reach`` as ``Account``; SceneError where a variable is not had."""
     if work > 0.0:
         from roughmdr.interaction.jkr import path
 
-        adhering = path.solve_path(ensemble, separation, effective_modulus, work, interaction, set(names))
+        adhering = path.solve_path(ensemble, separation, effective_modulus, work, interaction, set(names), reach=reach)
         return _adhering(ensemble, separation, interaction, adhering)
     from roughmdr.interaction.solve import solve_path
 
@@ -199,8 +207,8 @@ def _adhering(ensemble: Ensemble, separation: Floats, interaction: Interaction, 
     error = found.error
     if ensemble.origin == "hills":
         largest = float(np.nanmax(np.abs(found.total[totals.FORCE]), initial=0.0))
-        loading = branches(separation) == "loading"
-        error = np.minimum(error + adhesive_hills_error(along.pull_offs, largest, loading), 1.0)
+        doubted, held = np.array([(step.doubted, step.held) for step in along.steps]).reshape(-1, 2).T
+        error = np.minimum(error + adhesive_hills_error(doubted, held, largest), 1.0)
     return found._replace(
         error=error,
         warnings=(along.crowded,) if along.crowded else (),

@@ -22,6 +22,11 @@ Rounded punches need no more, however sharp their edges are: contacts detach at 
 _PULL_OFF, _MOST_PULL_OFF = 0.09, 1.0 / 3.0
 """The error of JKR's pull-off force: over the squared Tabor number (1 % at 3), and at most, of DMT, 2 pi w R."""
 
+_JUMP, _JUMP_POWER = 1.6, -4.0 / 7.0
+"""Distance before touch from which attraction with a range pulls a contact on, over the stretch at which it detaches:
+power of the Tabor number by van der Waals forces (J.-J. Wu, J. Adhes. 86 (2010) 1071), and a factor with which it is no
+less than measured, 0.8 at 2 and 0.5 at 6 (``pipelines/versus_adhesive_bem.py``)."""
+
 _PER_FOLD = 4.0  # pull-off force of a paraboloid over E* a |delta| at its detachment under fixed grips
 
 ASSUMED_RANGE = 0.4e-9
@@ -39,6 +44,14 @@ class JkrValidity(NamedTuple):
     """About the error of the force of JKR, over the largest force; with ``ASSUMED_RANGE`` where no range is given."""
     contact_error: float = 0.0
     """About the error of JKR's force of one contact [N] while it holds; jumps on before touch are left out."""
+
+    @property
+    def reach(self) -> float:
+        """About the largest distance before touch from which contacts jump on, over the stretch at which they detach.
+
+        At most 1, and so where the range is not given.
+        """
+        return min(_JUMP * self.tabor**_JUMP_POWER, 1.0) if 0.0 < self.tabor < math.inf else 1.0
 
 
 def jkr_validity(

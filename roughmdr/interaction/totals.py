@@ -36,3 +36,8 @@ class Step(NamedTuple):
     """The part of it that a machine loses."""
     conductance: float = 0.0
     """The conductance radius."""
+    doubted: float = 0.0
+    """Pull-off forces, each alone, of asperities out of contact that attraction with a range may have pulled on, and of
+    contacts that overlap."""
+    held: float = 0.0
+    """Those of other contacts."""

@@ -3,7 +3,6 @@
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
 from roughmdr.ensemble.ensemble import Ensemble, Origin
 from roughmdr.numerics.arguments import Floats
@@ -24,9 +23,9 @@ _HILLS = 0.06
 """Of the hills of an isotropic map, from 0.3 to 20 % contact (``pipelines/hills.py``); it grows as the root of the
 ratio of the slopes across and along the waves."""
 
-_LOADING, _UNLOADING = 0.7, 0.3
-"""Error of the force of adhesive hills, by legs, over the pull-off forces of their contacts: where the attraction has a
-range contacts close earlier than by JKR, and merge (``pipelines/adhesive_hills.py``, Tabor number 2)."""
+_HELD = 0.13
+"""Error of the force of adhesive hills in contact, over their pull-off forces: that of one paraboloid at Tabor number 2
+(``pipelines/versus_adhesive_bem.py``; ``pipelines/adhesive_hills.py`` holds it against maps)."""
 
 WARNED_SHARE, WARNED_FRACTION = 0.1, 0.1
 MARKED_SHARE, MARKED_FRACTION = 0.25, 0.15
@@ -55,15 +54,15 @@ def coupling_error(
     return np.minimum(error + summits_error(contact_fraction, origin), 1.0)
 
 
-def adhesive_hills_error(pull_offs: float, largest: float, loading: NDArray[np.bool_]) -> Floats:
-    """Return what JKR adds to the error of hills at each step, over the largest force [1].
+def adhesive_hills_error(doubted: Floats, held: Floats, largest: float) -> Floats:
+    """Return what JKR adds to the error of hills at each step, over the largest force [1]; 1 where that is 0.
 
-    ``pull_offs`` is the sum of the pull-off forces of the contacts at closest approach, ``largest`` the largest force
-    [N]; ``loading`` are the steps at which the flat comes down.
+    ``doubted`` are the pull-off forces of hills that JKR has out of contact and that attraction with a range may have
+    pulled into it, and of those whose contacts overlap, of which it does not know how they merge; ``held`` are those of
+    other contacts, shape (n,) each; ``largest`` is the largest force [N].
     """
-    if not largest > 0.0:
-        return np.zeros(loading.size)
-    return np.minimum(np.where(loading, _LOADING, _UNLOADING) * (pull_offs / largest), 1.0)
+    off = doubted + _HELD * held
+    return np.where(off < largest, off / (largest or 1.0), (off > 0.0).astype(float))
 
 
 def foreseen_error(contact_fraction: float, overlap: float) -> float:

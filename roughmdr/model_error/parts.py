@@ -85,7 +85,7 @@ class ModelError(NamedTuple):
         """Return the error along a path: separation [m], force [N] and contact fraction at each step.
 
         The parts add up, each and all to at most 1, the whole force; that of JKR is over the largest force. Where the
-        force is 0 there is no error.
+        force is 0 there is no error but that of contacts which JKR makes too late.
         """
         limits, largest = assumptions.limits, float(np.nanmax(np.abs(force), initial=0.0))
         constant = {
@@ -104,7 +104,7 @@ class ModelError(NamedTuple):
             interaction = interaction_error(contact_fraction, coefficients) if known is None else np.minimum(known, 1.0)
         else:
             interaction = np.where(np.isnan(force), math.nan, coupled)
-        curve = np.where(force != 0.0, np.minimum(interaction + sum(constant.values()), 1.0), 0.0)
+        curve = np.minimum(interaction + np.where(force != 0.0, sum(constant.values()), 0.0), 1.0)
         if coupled is None:
             trusted = interaction <= interaction_error(np.array(_SLACK * TRUSTED_FRACTION), coefficients)
         else:  # the error of hills is the same at every contact fraction

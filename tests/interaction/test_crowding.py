@@ -138,21 +138,47 @@ def test_a_machine_asks_for_the_errors_of_its_steps_only(monkeypatch: pytest.Mon
         calls.clear()
 
 
-def test_the_error_of_adhesive_hills_goes_by_the_sense_of_motion(monkeypatch: pytest.MonkeyPatch) -> None:
-    """The first unloading, before the deeper second loop, is no loading. How near contacts are is not asked."""
+@pytest.mark.parametrize(("given", "early"), [({}, True), ({"range": "0.2 um"}, True), ({"range": "5 nm"}, False)])
+def test_the_error_of_an_adhesive_hill_goes_by_whether_it_may_have_jumped_on(
+    given: dict[str, str], early: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Before touch, where JKR has no force, unless the range is short; not once it has parted, 0.8 um above.
+
+    How near contacts are is not asked.
+    """
     monkeypatch.setattr("roughmdr.interaction.jkr.account.crowding", None)
-    hills = ensemble([0.0, -1e-6, -2e-6], area=1.0, radius=1e3, x=[0.2, 0.7, 0.5], y=[0.5, 0.5, 0.9])
-    hills.attrs["asperity_model"] = "hills"
-    h = 1e-6 * np.array([5.0, -2.0, -3.0, -2.0, 20.0, -2.0, -6.0, -3.0])
-    law = rm.load_separation(
-        hills, separation=h, effective_modulus=1e9, work=0.01, interaction={"model": "pairwise"},
-        variables=["force", "model_error_curve"],
-    )  # fmt: skip
-    rises, touching = np.diff(h, prepend=np.inf) > 0.0, law.force.values != 0.0
-    curve = law.model_error_curve.values
-    assert touching[[1, 2, 3, 5, 6, 7]].all()
-    (unloading,), (loading,) = np.unique(curve[rises & touching]), np.unique(curve[~rises & touching])
-    assert 0.06 < unloading < loading < 1.0
+    hill = ensemble([0.0], area=1.0, radius=1e3, x=[0.2], y=[0.5])
+    hill.attrs["asperity_model"] = "hills"
+    path: dict[str, Any] = {"separation": 1e-6 * np.array([1.0, 0.5, -1.0, 0.5, 1.0])}
+    asked: dict[str, Any] = {"variables": ["force", "model_error_curve"], "interaction": {"model": "pairwise"}, **given}
+    law = rm.load_separation(hill, **path, **asked, effective_modulus=1e9, work=0.01)
+    force, error = law.force.values, law.model_error_curve.values
+    assert (force != 0.0).tolist() == [False, False, True, True, False]
+    alone = 1.5 * np.pi * 0.01 * 1e3 / np.abs(force).max()
+    np.testing.assert_allclose(error[2:4], 0.06 + float(law.adhesion_range_error) + 0.13 * alone, rtol=1e-3)
+    np.testing.assert_allclose(error[[0, 1, 4]], [0.0, min(alone, 1.0) if early else 0.0, 0.0], rtol=1e-3)
+    machine = {"remote": path["separation"], "machine_stiffness": "1e15 N/m"}
+    stiff = rm.load_separation(hill, **machine, **asked, effective_modulus=1e9, work=0.01)
+    np.testing.assert_allclose(stiff.model_error_curve, error, rtol=1e-3)
+
+
+def test_overlapping_contacts_of_adhesive_hills_are_in_doubt_as_a_whole() -> None:
+    """Contacts of a radius of 5 cm: 6 cm apart they overlap, 40 cm apart they do not."""
+
+    def error(apart: float) -> tuple[float, float]:
+        pair = ensemble([0.0, 0.0], area=1.0, radius=1e3, x=[0.3, 0.3 + apart], y=[0.5, 0.5])
+        pair.attrs["asperity_model"] = "hills"
+        law = rm.load_separation(
+            pair, separation=[-2e-6], effective_modulus=1e9, work=0.01, interaction={"model": "pairwise"}
+        )
+        assert float(law.contact_count[0]) == 2.0
+        alone = 2.0 * 1.5 * np.pi * 0.01 * 1e3 / abs(float(law.force[0]))
+        return (float(law.model_error) - 0.06 - float(law.adhesion_range_error)) / alone, alone
+
+    (far, _), (near, alone) = error(0.4), error(0.06)
+    assert alone < 0.9
+    assert far == pytest.approx(0.13, rel=1e-3)
+    assert near == pytest.approx(1.0, rel=1e-3)
 
 
 def test_of_hills_nothing_is_asked_for_that_their_error_does_not_use(monkeypatch: pytest.MonkeyPatch) -> None:

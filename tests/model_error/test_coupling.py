@@ -47,10 +47,13 @@ def test_it_grows_with_each_share_and_stays_a_fraction(fraction: float, overlap:
 def test_adhesive_hills_are_off_by_a_share_of_the_pull_off_forces(
     pull_offs: float, largest: float, unit: float
 ) -> None:
-    loading, unloading = adhesive_hills_error(pull_offs * unit, largest * unit, np.array([True, False]))
-    assert 0.0 <= unloading <= loading <= 1.0
-    assert loading == pytest.approx(min(0.7 * pull_offs / largest, 1.0), rel=1e-9)
-    assert adhesive_hills_error(pull_offs, 0.0, np.array([True])).tolist() == [0.0]
+    """All of those that may be in contact and are not, or overlap; without any force nothing is known."""
+    forces = pull_offs * np.array([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
+    doubted, held, none = adhesive_hills_error(*(unit * forces), unit * largest)
+    assert doubted == pytest.approx(min(pull_offs / largest, 1.0), rel=1e-9)
+    assert held == pytest.approx(min(0.13 * pull_offs / largest, 1.0), rel=1e-9)
+    assert none == 0.0
+    assert adhesive_hills_error(*forces, 0.0).tolist() == [pull_offs > 0.0, pull_offs > 0.0, 0.0]
 
 
 def test_without_contact_there_is_none() -> None:

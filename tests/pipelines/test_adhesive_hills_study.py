@@ -9,6 +9,7 @@ from adhesive_hills import STUDY
 from carried_out import CarriedOut, carried_out
 from studies.adhesive_hills.judge import judge
 from studies.adhesive_hills.measure import METHODS
+from studies.adhesive_hills.stated import FACTOR, SETS, compare
 
 
 @pytest.fixture(scope="module")
@@ -45,3 +46,23 @@ def test_it_reports_each_method_and_draws(studied: CarriedOut) -> None:
     for method in METHODS:
         assert f"| {method} |" in studied.text
     assert (Path(studied.folder) / "adhesive_hills.png").stat().st_size > 5000
+
+
+def test_the_stated_error_bounds_the_largest_of_either_set(studied: CarriedOut) -> None:
+    """Which jumps are made too late is most of it: without contact by JKR the force is off by a pull-off force."""
+    result = studied.result
+    assert tuple(result["set"].to_numpy()) == SETS
+    largest, stated = result["error_largest"].to_numpy(), result["error_stated"].to_numpy()
+    assert (largest > 0.1).all()
+    assert (largest <= stated).all()
+    assert (stated <= FACTOR * largest).all()
+    for name in SETS:
+        assert f"| {name} | 1 of 1 | 1 of 1 | 1 of 1 |" in studied.text
+
+
+def test_errors_are_over_the_largest_force_and_those_unseen_do_not_count() -> None:
+    true, force = np.array([0.01, -1.0, 2.0, 9.0]), np.array([0.0, -2.0, 4.0, 4.0])
+    found = compare(true, force, np.array([0.0, 0.2, 0.6, 1.0]))
+    assert found.largest == found.stated == 1.0
+    assert found.rms == pytest.approx(np.sqrt((0.25**2 + 0.5**2 + 1.0) / 3.0))
+    assert found.inside == pytest.approx(2.0 / 3.0)

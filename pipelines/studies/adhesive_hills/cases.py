@@ -6,6 +6,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 import xarray as xr
+from oracles.adhesive_elements import AdhesiveMap
 
 import roughmdr as rm
 from roughmdr.ensemble.maps.height_map import HeightMap
@@ -71,20 +72,33 @@ class Adhesive:
 
     def law(self, asperities: xr.Dataset, separation: Floats, **asked: Any) -> Law:
         """Return the law of asperities along a path, by JKR unless asked otherwise."""
+        try:
+            found = self.found(asperities, separation, **asked)
+        except rm.RoughmdrError:
+            return Law(np.full(separation.size, np.nan), np.full(separation.size, np.nan))
+        return Law(found["force"].to_numpy(), found["contact_fraction"].to_numpy())
+
+    def found(self, asperities: xr.Dataset, separation: Floats, **asked: Any) -> xr.Dataset:
+        """Return that law with the stated error; RoughmdrError where there is none."""
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", rm.LimitWarning)
-            try:
-                found = rm.load_separation(
-                    asperities,
-                    separation=separation,
-                    effective_modulus=1.0,
-                    work=self.work,
-                    variables=("force", "contact_fraction"),
-                    **asked,
-                )
-            except rm.RoughmdrError:
-                return Law(np.full(separation.size, np.nan), np.full(separation.size, np.nan))
-        return Law(found["force"].to_numpy(), found["contact_fraction"].to_numpy())
+            return rm.load_separation(
+                asperities,
+                separation=separation,
+                effective_modulus=1.0,
+                work=self.work,
+                variables=("force", "contact_fraction", "model_error_curve"),
+                **asked,
+            )
+
+    def by_elements(self, separation: Floats, points: float, reach: float) -> Law:
+        """Return the law by boundary elements; a contact is the mean of what is closed and what is within the range."""
+        surface = self.case.surface
+        height = surface.height(points / (surface.bandwidth * np.sqrt(surface.anisotropy)))
+        elements = AdhesiveMap(height / SIDE, 1.0, self.work / SIDE, reach / SIDE)
+        states = [elements.move(h / SIDE) for h in separation.tolist()]
+        force = np.array([state.force for state in states]) * SIDE**2
+        return Law(force, np.array([0.5 * (state.closed + state.attracted) for state in states]))
 
 
 _MAPS = (MapCase(0.8, 4, 11), MapCase(0.5, 6, 11), MapCase(0.8, 6, 12), MapCase(0.8, 4, 11, 2.0))

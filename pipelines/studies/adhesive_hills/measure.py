@@ -2,10 +2,10 @@
 
 import numpy as np
 import xarray as xr
-from oracles.adhesive_elements import AdhesiveMap
 
 from roughmdr.numerics.arguments import Floats
 from studies.adhesive_hills.cases import CASES, QUICK, Adhesive, Case, Law
+from studies.adhesive_hills.stated import FEW, MAPS, measure_stated
 from studies.hills.maps import SIDE
 from studies.study import named
 
@@ -19,24 +19,14 @@ _DEPTHS = (0.02, 0.03, 0.05, 0.07, 0.1, 0.15)
 """Contact fractions of independent hills at which pairs are tried for an equilibrium."""
 
 
-def by_elements(adhesive: Adhesive, separation: Floats, points: float, reach: float) -> Law:
-    """Return the law by boundary elements; a contact is the mean of what is closed and what is within the range."""
-    case = adhesive.case
-    height = case.surface.height(points / (case.surface.bandwidth * np.sqrt(case.surface.anisotropy)))
-    surface = AdhesiveMap(height / SIDE, 1.0, adhesive.work / SIDE, reach / SIDE)
-    states = [surface.move(h / SIDE) for h in separation.tolist()]
-    force = np.array([state.force for state in states]) * SIDE**2
-    return Law(force, np.array([0.5 * (state.closed + state.attracted) for state in states]))
-
-
 def laws(adhesive: Adhesive, separation: Floats) -> list[Law]:
     """Return the laws by boundary elements, on a coarser grid and with a longer range, and by each method."""
     points, reach = adhesive.case.points, adhesive.reach
     hills, summits = adhesive.hills, adhesive.summits
     return [
-        by_elements(adhesive, separation, points, reach),
-        by_elements(adhesive, separation, _COARSE * points, reach),
-        by_elements(adhesive, separation, _COARSE * points, LONGER * reach),
+        adhesive.by_elements(separation, points, reach),
+        adhesive.by_elements(separation, _COARSE * points, reach),
+        adhesive.by_elements(separation, _COARSE * points, LONGER * reach),
         adhesive.law(summits, separation),
         adhesive.law(summits, separation, interaction="pairwise"),
         adhesive.law(hills, separation),
@@ -68,6 +58,7 @@ def measure(quick: bool) -> xr.Dataset:
             "force": (over, numbers[:, :, 0], named("force over the effective modulus", "m2")),
             "contact_fraction": (over, numbers[:, :, 1], named("contact area over nominal area")),
             "separation": (over[::2], np.array(paths), named("separation from the mean plane", "m")),
+            **measure_stated(FEW if quick else MAPS),
             "lost_from": ("case", lost, named("contact fraction from which on pairs have no equilibrium")),
         },
         {"source": [*ELEMENTS, *METHODS], **_columns(cases, adhesive)},

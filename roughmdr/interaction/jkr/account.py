@@ -4,6 +4,7 @@ import math
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from roughmdr.interaction import close
 from roughmdr.interaction.conductance import Punches, total_conductance
@@ -19,6 +20,7 @@ from roughmdr.numerics.arguments import Floats
 from roughmdr.schema.units import format_quantity
 
 _SOLVER_ERROR = 1e-11  # of all loads
+_STRETCH = 3.0 * 4.0 ** (-4.0 / 3.0)  # of a paraboloid where it detaches, over its natural depth
 
 
 class Adhering(NamedTuple):
@@ -35,8 +37,6 @@ class Adhering(NamedTuple):
     avalanches: list[Avalanche]
     """In SI."""
     pull_off: PullOff
-    pull_offs: float
-    """About the sum of the pull-off forces [N] of the contacts of that step, each alone."""
     crowded: str
     """A warning where contacts overlap as soon as they are made; empty where they do not."""
 
@@ -44,11 +44,20 @@ class Adhering(NamedTuple):
 class Account:
     """The totals of the contacts of a front so far; E* [Pa], of ``total`` asperities with those that are buried.
 
-    Radius and force of each are kept where the flat is closest, or at step number ``at``.
+    Radius and force of each are kept where the flat is closest, or at step number ``at``. ``reach`` is the distance
+    from which contacts may jump on, over their stretch where they detach; 0 where that is not asked for.
     """
 
     def __init__(
-        self, front: Front, modulus: float, total: int, names: set[str], *, rises: bool, at: int | None = None
+        self,
+        front: Front,
+        modulus: float,
+        total: int,
+        names: set[str],
+        *,
+        rises: bool,
+        at: int | None = None,
+        reach: float = 0.0,
     ) -> None:
         self._front, self._modulus, self._names = front, modulus, names
         self._length = front.placed.length
@@ -56,7 +65,7 @@ class Account:
         """Of energies in units of the patch [J]."""
         self._steps, self._separation, self._avalanches = list[Step](), list[float](), list[Avalanche]()
         self._radius, self._force = np.zeros(total), np.zeros(total)
-        self._at, self._closest = at, math.inf
+        self._at, self._closest, self._reach = at, math.inf, _STRETCH * reach
         self._tension = Tension() if rises else None
         self.dissipated = self.machine_dissipated = 0.0
         """By the avalanches, and by the jumps of the machine beside them [J]."""
@@ -101,15 +110,17 @@ class Account:
             visits,
             self._avalanches,
             self._pull_off(),
-            self._pull_offs(),
             self._crowded(),
         )
 
     def _totals(self, state: State) -> Step:
         problem, length = self._front.problem, self._length
         lost = self.dissipated + self.machine_dissipated, self.machine_dissipated
+        overlapping = np.zeros(state.t.size, np.bool_)
+        close.mark_overlaps(problem.near.pairs, np.where(state.inside, state.contacts.radius, 0.0), overlapping)
+        doubted, held = self._pull_offs(state, overlapping) if self._reach > 0.0 else (0.0, 0.0)
         if not state.inside.any():
-            return Step(dissipated=lost[0], by_machine=lost[1])
+            return Step(dissipated=lost[0], by_machine=lost[1], doubted=doubted)
         on = np.flatnonzero(state.inside)
         radius, load = state.contacts.radius[on], state.load[on]
         unit = math.pi * self._modulus * length * length
@@ -120,8 +131,6 @@ class Account:
             conductance = length * self._conductance(state)
             if math.isnan(conductance):
                 return Step(error=math.inf)
-        overlapping = np.zeros(state.t.size, np.bool_)
-        close.mark_overlaps(problem.near.pairs, np.where(state.inside, state.contacts.radius, 0.0), overlapping)
         sizes = math.fsum(np.abs(load).tolist())
         share = float(np.abs(state.load[overlapping]).sum()) / sizes if sizes > 0.0 else 0.0
         tilt = np.hypot(*(state.field[1:3, on] + state.outer[1:3, on]))
@@ -137,6 +146,8 @@ class Account:
             self.energy_unit * energy(problem, state) if "energy" in self._names else 0.0,
             *lost,
             conductance,
+            doubted,
+            held,
         )
 
     def _crowding(self, state: State) -> float:
@@ -161,11 +172,19 @@ class Account:
         force = math.pi * self._modulus * length * length * tension.force
         return PullOff(force, length * tension.separation, float(tension.contacts), area)
 
-    def _pull_offs(self) -> float:
-        """Return the sum of 3/2 pi w R, R that of the paraboloid that jumps on with as large a contact."""
-        made = self._front.made[self._radius[self._front.placed.kept] > 0.0]
-        alone = 1.5 * math.pi * np.sqrt(self._front.work * made**3 / (2.0 * math.pi))
-        return self._modulus * self._length**2 * math.fsum(alone.tolist())
+    def _pull_offs(self, state: State, overlapping: NDArray[np.bool_]) -> tuple[float, float]:
+        """Return the sums of 3/2 pi w R of those that may have jumped on or overlap, and of other contacts.
+
+        R is that of the paraboloid that jumps on with as large a contact.
+        """
+        front, count = self._front, state.t.size
+        alone = 1.5 * math.pi * np.sqrt(front.work * front.made**3 / (2.0 * math.pi))
+        gap, inside = front.placed.height - state.separation, np.zeros(alone.size, np.bool_)
+        gap[:count], inside[:count] = state.gap, state.inside
+        doubted = ~inside & (gap > -self._reach * front.natural)
+        doubted[:count] |= overlapping
+        unit = self._modulus * self._length**2
+        return unit * math.fsum(alone[doubted].tolist()), unit * math.fsum(alone[inside & ~doubted].tolist())
 
     def _crowded(self) -> str:
         """Return the warning about contacts that overlap as soon as they are made."""

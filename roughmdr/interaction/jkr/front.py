@@ -55,7 +55,7 @@ class Front:
         if not (self.work > 0.0 and math.isfinite(self.work)):
             raise OutOfRange(f"work over modulus is {work / effective_modulus:g} m; it is not representable")
         self._asperities = placed.asperities(placed.height.size)
-        self._natural, self.made = _lone_scales(self._kernels, self._asperities, self.work)
+        self.natural, self.made = _lone_scales(self._kernels, self._asperities, self.work)
         self._lowest = math.inf  # separation down to which the pairs are known that may overlap
         self._coupling: Dense | None = None
         self._take(0)
@@ -68,7 +68,7 @@ class Front:
     @property
     def depth(self) -> float:
         """The largest natural depth."""
-        return float(self._natural.max(initial=0.0))
+        return float(self.natural.max(initial=0.0))
 
     def _bring_down(self, state: State, h: float) -> State:
         """Have the asperities that a flat at h may touch, and the pairs that may overlap; return the state with all."""
@@ -89,7 +89,7 @@ class Front:
         at, few = placed.at[:count], Asperities(*(each[:count] for each in self._asperities))
         x, y = np.ascontiguousarray(at.T)
         coupling = self._coupling = Dense(x, y, placed.patch, interaction.boundary == "periodic", self._coupling)
-        natural, reach = self._natural[:count], np.empty((2, count))
+        natural, reach = self.natural[:count], np.empty((2, count))
         kernels.flanks(np.arange(count), self._lowest, natural, few, reach)
         near = coincident.Near(kernels, few, natural, coincident.find(at, reach[0], placed.sides))
         self.problem = Problem(kernels, few, coupling, near, interaction.order, self.work, natural)

@@ -20,6 +20,7 @@ def solve_on_machine(
     interaction: Interaction,
     names: set[str],
     clear: float,
+    reach: float = 0.0,
 ) -> Adhering:
     """Return adhesive contacts at the demands of a machine, whose flat comes from infinity; w [J/m2].
 
@@ -30,7 +31,7 @@ def solve_on_machine(
     machine, unit = _in_patch(path.machine, effective_modulus, placed.length)
     legs, front = legs_of(path.demand), Front(placed, effective_modulus, work)
     rises = any(leg.rises for leg in legs)
-    account = Account(front, effective_modulus, ensemble.height.size, names, rises=rises)
+    account = Account(front, effective_modulus, ensemble.height.size, names, rises=rises, reach=reach)
     lossy = not {"dissipated_energy", "machine_dissipated_energy"}.isdisjoint(names)
     flat = Hanging(front, account, machine, unit, clear / placed.length, lossy=lossy)
     try:

@@ -23,16 +23,19 @@ def solve_path(
     interaction: Interaction,
     names: set[str],
     at: int | None = None,
+    reach: float = 0.0,
 ) -> Adhering:
     """Return adhesive contacts at separations [m] of a flat that comes from infinity; w [J/m2].
 
     Stiffness, energy and crowding are computed where ``names`` asks for them; each contact is told where the flat is
-    closest, or at step number ``at``. Errors as ``interaction.solve``.
+    closest, or at step number ``at``; ``reach`` as ``Account``. Errors as ``interaction.solve``.
     """
     placed = Placed(ensemble, effective_modulus, interaction)
     front = Front(placed, effective_modulus, work)
     rises = np.diff(separation, prepend=np.inf) > 0.0
-    account = Account(front, effective_modulus, ensemble.height.size, names, rises=bool(rises.any()), at=at)
+    account = Account(
+        front, effective_modulus, ensemble.height.size, names, rises=bool(rises.any()), at=at, reach=reach
+    )
     state = front.parted(max(float(separation[0]) / placed.length, front.top + _ABOVE))
     try:
         for h, up in each_step(list(zip(separation.tolist(), rises.tolist(), strict=True))):
