@@ -22,7 +22,7 @@ _COINCIDENT = 2.0 / math.pi
 
 
 def error_by_distances(radius: Floats, load: Floats, at: Floats, sides: Floats | None) -> float:
-    """Return by how much the force of independent asperities is too high [1]; negative where it is too low.
+    """Return by how much the force of independent asperities is too high [1], of few at most 1; negative: too low.
 
     Contact radii [m] and loads in any unit, shape (n,), all above 0; positions [m], shape (n, 2). ``sides`` [m] are
     those of the patch that many cover; None of few.
@@ -37,7 +37,11 @@ def error_by_distances(radius: Floats, load: Floats, at: Floats, sides: Floats |
     displaced = (load / distance).sum(axis=1)
     if sides is not None:
         displaced -= _mean_inverse_from_middle(sides) * (load.sum() - load[rows])
-    return float(2.0 / math.pi * np.sum(radius[rows] * displaced) / np.sum(load[rows]))
+    lost, alone = 2.0 / math.pi * radius[rows] * displaced, float(np.sum(load[rows]))
+    if sides is not None:
+        return float(np.sum(lost)) / alone
+    off = float(np.sum(np.minimum(lost, load[rows])))  # no contact loses more than it bears
+    return off / max(alone - off, off)
 
 
 def error_of_few(area: Floats, contacts: Floats, others: Floats, inverse_distance: float) -> Floats:

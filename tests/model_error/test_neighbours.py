@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 import xarray as xr
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from scenes import scene
 
@@ -74,6 +74,7 @@ def test_a_lone_asperity_of_a_layer_under_a_curved_body_is_one_of_many() -> None
 
 @settings(deadline=None, max_examples=25)
 @given(st.integers(2, 10), st.integers(0, 2**31), st.floats(1.0, 30.0), st.sampled_from(["paraboloid", "cone"]))
+@example(2, 106097, 1.0, "paraboloid")  # a larger contact takes all that the smaller one bears
 def test_the_error_of_few_is_that_of_their_distances_whatever_the_patch(
     count: int, seed: int, apart: float, shape: str
 ) -> None:
@@ -90,7 +91,7 @@ def test_the_error_of_few_is_that_of_their_distances_whatever_the_patch(
         alone = rm.load_separation(asperities, **given, variables=["force", "model_error_curve"])
         true = (alone.force / rm.load_separation(asperities, **given, interaction=FREE).force - 1.0).values
         stated = (alone.model_error_curve - alone.slope_error).values
-        seen = (true > 1e-6) & (true < 0.4)  # beyond, some overlap
+        seen, true = true > 1e-6, np.minimum(true, 1.0)  # also of those that overlap
         assert (stated[seen] >= 0.98 * true[seen]).all()
         assert (stated[seen] <= 3.0 * true[seen]).all()
 
@@ -191,7 +192,7 @@ def test_of_many_that_cover_their_patch_the_mean_is_taken_off() -> None:
     ]
     free = error_by_distances(np.full(100, 0.01), np.ones(100), rng.random((100, 2)), None)
     assert abs(np.mean(errors)) < 0.02
-    assert free > 1.0
+    assert free == 1.0  # the whole force
 
 
 def lattice(count: int) -> dict[str, Any]:
