@@ -123,7 +123,7 @@ def crowd(share: float, seed: int) -> xr.Dataset:
 
 
 def near_pairs(count: int, seed: int) -> xr.Dataset:
-    """The same on all of the patch, but for ``count`` that stand about half a contact radius from another one."""
+    """A crowd on all of the patch, ``count`` of which stand about half a contact radius from another one."""
     asperities, rng = crowd(1.0, seed), np.random.default_rng(seed)
     for axis in "xy":
         at = asperities[axis].values

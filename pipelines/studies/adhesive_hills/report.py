@@ -50,7 +50,8 @@ have no equilibrium; E* w/strength², which the grid must resolve, over its spac
 
 On how many maps `model_error` of hills in pairs, with the range given, is no less than their error against boundary
 elements, both over the largest force and at most 1: maps that its form is from, and maps drawn after it was settled
-(Tabor numbers 1 to 4). Of single steps those count at which the force is more than 2 % off:
+(Tabor numbers from 1, at most 4, as far as the grid resolves them). Of single steps those count at which the force is
+more than 2 % off:
 
 {report_stated(result)}
 """

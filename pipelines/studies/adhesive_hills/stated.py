@@ -39,10 +39,11 @@ class Stated(NamedTuple):
     """Errors of hills in pairs on a map, over their largest force, at most 1 as the stated one is."""
 
     rms: float
+    """Of the steps with a visible error."""
     largest: float
-    """Over the steps,"""
+    """Of a step."""
     stated: float
-    """and what ``model_error`` says of it."""
+    """The ``model_error``."""
     inside: float
     """Share of the steps with a visible error whose own stated error is no less."""
 
