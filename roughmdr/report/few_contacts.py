@@ -24,10 +24,11 @@ _SAMPLES = {"surface": "map", "spectrum": "map", "file": "ensemble"}  # words fo
 def sample_lines(effective: list[Floats], scene: str) -> Iterator[tuple[str, str]]:
     """Yield the line "sample" where few contacts carry the load at closest approach in cells of a scene, as TOML.
 
-    ``effective`` are the effective numbers of contacts in the runs of each cell, NaN where they are not known; their
+    ``effective`` are the effective numbers of contacts in the runs of each cell, above 0 where they are known; their
     median counts. Nothing is said where the scene asks for so few asperities.
     """
-    known = [float(np.median(cell[np.isfinite(cell)])) for cell in effective if np.isfinite(cell).any()]
+    runs = [cell[np.isfinite(cell) & (cell > 0.0)] for cell in effective]
+    known = [float(np.median(cell)) for cell in runs if cell.size]
     few = [number for number in known if number < _FEW]
     asperities = parse_toml(scene).get("asperities")
     if not few or not isinstance(asperities, dict):

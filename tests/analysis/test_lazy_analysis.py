@@ -59,15 +59,16 @@ def test_it_stays_lazy_and_computes_to_the_same_bits(method: str, curves: xr.Dat
 
 
 _MEASURE = """
-import resource, sys
+import sys
 import roughmdr, xarray, dask.array
 from scipy import special
 from roughmdr.analysis import accessor, interpolation, statistics, hysteresis, power_law
+from roughmdr.storage.memory import peak_memory
 with xarray.open_dataset(sys.argv[1], chunks={"realization": 500}) as result:
     of = result.roughmdr
     for found in (of.at_force([1e-5, 1e-4]), of.statistics(), of.hysteresis(), of.fit_power_law("stiffness", "force")):
         found.compute(scheduler="threads", num_workers=2)
-print(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1e6)
+print(peak_memory() / 1e9)
 """
 
 
