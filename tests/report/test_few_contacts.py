@@ -42,6 +42,10 @@ def test_the_effective_number_counts_equal_contacts(forces: list[float], copies:
 def test_without_contact_there_is_no_number() -> None:
     assert math.isnan(effective_number(np.zeros(3)))
     assert math.isnan(effective_number(np.zeros(0)))
+    none, some = np.array([0.0, -1.0, np.nan]), np.array([0.0, 4.0, np.nan])
+    assert not list(sample_lines([none], "[asperities]"))
+    ((_, words),) = sample_lines([none, some], "[asperities]")
+    assert words.startswith("about 4 contacts")
 
 
 def test_it_is_the_scatter_of_realisations() -> None:
