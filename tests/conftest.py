@@ -1,5 +1,6 @@
 """What the tests of disturbed batches have in common: the undisturbed ones, and a folder to work in."""
 
+import signal
 from pathlib import Path
 
 import pytest
@@ -7,6 +8,11 @@ import xarray as xr
 from batches import CURVES, STATISTICS, write_scene
 
 import roughmdr as rm
+
+
+def pytest_configure() -> None:
+    """Let tests interrupt what they start, also where they run in the background of a shell, which ignores SIGINT."""
+    signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
 @pytest.fixture(scope="module")
