@@ -42,10 +42,10 @@ def neighbours_error(
     found = [(0.0, 0.0)]
     for step in _states(area[: int(np.argmin(path.separation)) + 1]):
         radius = radius_at(float(path.separation[step]))
-        on = radius > 0.0
+        load = ensemble.relative_loads(radius) if radius.any() else radius
+        on = load > 0.0  # not so a flat that only touches
         at = np.column_stack([ensemble.positions[name][on] for name in ("x", "y")])
-        load = ensemble.relative_loads(radius)[on]
-        error = error_by_distances(radius[on], load, at, None if few else np.array(sides)) if on.any() else 0.0
+        error = error_by_distances(radius[on], load[on], at, None if few else np.array(sides)) if on.any() else 0.0
         found.append((math.sqrt(area[step]), max(error, 0.0)))
     roots, errors = np.transpose(sorted(found))
     by_root = np.asarray(np.interp(np.sqrt(area), roots, errors))

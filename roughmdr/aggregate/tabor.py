@@ -24,8 +24,9 @@ _PULL_OFF, _MOST_PULL_OFF = 0.09, 1.0 / 3.0
 
 _JUMP, _JUMP_POWER = 1.6, -4.0 / 7.0
 """Distance before touch from which attraction with a range pulls a contact on, over the stretch at which it detaches:
-power of the Tabor number by van der Waals forces (J.-J. Wu, J. Adhes. 86 (2010) 1071), and a factor with which it is no
-less than measured, 0.8 at 2 and 0.5 at 6 (``pipelines/versus_adhesive_bem.py``)."""
+factor and power of the Tabor number. The power is that of van der Waals forces (J.-J. Wu, J. Adhes. 86 (2010) 1071).
+The factor bounds what boundary elements find, 0.8 at a Tabor number of 2 and 0.5 at 6
+(``pipelines/versus_adhesive_bem.py``)."""
 
 _PER_FOLD = 4.0  # pull-off force of a paraboloid over E* a |delta| at its detachment under fixed grips
 
@@ -47,7 +48,7 @@ class JkrValidity(NamedTuple):
 
     @property
     def reach(self) -> float:
-        """About the largest distance before touch from which contacts jump on, over the stretch at which they detach.
+        """Largest distance before touch from which contacts may jump on, over the stretch at which they detach.
 
         At most 1, and so where the range is not given.
         """

@@ -136,8 +136,9 @@ def by_residuals(inverse: Floats, left: Floats, residuals: Floats) -> tuple[Floa
     """Return how far noise, as the residuals near each step tell it, moves each parameter, and its degrees of freedom.
 
     ``inverse`` [parameter, step] is how far a deviation moves each; ``left`` [step, parameter] are orthonormal vectors
-    that span the slopes. Degrees of freedom make the sum of squares that is each variance as uncertain as it is, after
-    Bell and McCaffrey (2002): (tr M)^2/tr M^2, M = w (1 - H) w, where w^2 is the share of each residual in it.
+    that span the slopes. Each variance is a weighted sum of squared residuals. Its degrees of freedom are those of the
+    chi-square distribution that scatters as much, (tr M)^2/tr M^2 with M = w (1 - H) w, after Bell and McCaffrey
+    (2002); w^2 is the share of each residual in the sum.
     """
     leverage = np.square(left).sum(axis=1)
     rest = _summed_nearby(np.maximum(1.0 - leverage, _LEAST_FREEDOM))

@@ -40,4 +40,4 @@ class Step(NamedTuple):
     """Pull-off forces, each alone, of asperities out of contact that attraction with a range may have pulled on, and of
     contacts that overlap."""
     held: float = 0.0
-    """Those of other contacts."""
+    """Pull-off forces of all other contacts."""

@@ -84,8 +84,8 @@ class ModelError(NamedTuple):
     ) -> "ModelError":
         """Return the error along a path: separation [m], force [N] and contact fraction at each step.
 
-        The parts add up, each and all to at most 1, the whole force; that of JKR is over the largest force. Where the
-        force is 0 there is no error but that of contacts which JKR makes too late.
+        The parts add up, each and all to at most 1, the whole force; those of JKR are over the largest force. Where
+        the force is 0 only the error by interaction is left: of contacts that push and pull, or that JKR makes late.
         """
         limits, largest = assumptions.limits, float(np.nanmax(np.abs(force), initial=0.0))
         constant = {

@@ -84,7 +84,7 @@ def fraction_warnings(largest: float) -> list[str]:
 
 
 def crowd_warnings(error: Floats | None, contact_fraction: Floats) -> list[str]:
-    """Return the warning of independent asperities that crowd; none where their force is not much too high.
+    """Return the warning of independent asperities that are near to each other; none where that changes little.
 
     ``error`` [1] is that by their distances at each step, None where it is not known. The text is the same for all
     realisations.
@@ -92,7 +92,7 @@ def crowd_warnings(error: Floats | None, contact_fraction: Floats) -> list[str]:
     if error is None or not (error > np.maximum(interaction_error(contact_fraction), _CROWDED)).any():
         return []
     return [
-        "independent asperities are near to each other, and contacts that overlap count more than once: the force is "
-        f"too high, by more than {_CROWDED:g} of the true one (interaction_error and overlap_fraction tell): ask for "
-        '[interaction] model = "pairwise"'
+        "independent asperities are so near to each other that the force is too high, by more than "
+        f"{_CROWDED:g} of the true one, and contacts that overlap count more than once (interaction_error and "
+        'overlap_fraction tell): [interaction] model = "pairwise" counts it, for sampled realisations'
     ]

@@ -18,7 +18,7 @@ from roughmdr.result.layout import (
     stored_variables,
     swept_sizes,
 )
-from roughmdr.result.means import mean_of
+from roughmdr.result.means import holds, mean_of
 from roughmdr.schema.quantities import adheres
 from roughmdr.schema.toml_text import parse_toml
 from roughmdr.schema.wording import suggestion
@@ -182,8 +182,21 @@ def _mean(result: Labelled, name: str) -> tuple[Floats, Floats]:
 
 
 def _model_error(result: Labelled, name: str, mean: Floats) -> Floats:
-    """Return the model error of a mean force; NaN where it is not known, or of other variables."""
+    """Return the model error of a mean force; NaN where it is not known, or of other variables.
+
+    Its parts by JKR are over the largest force of the path.
+    """
     curve = "model_error_curve"
-    if name in ("force", "pressure") and (curve in result.variables or f"{curve}_mean" in result.variables):
-        return np.asarray(np.abs(mean) * mean_of(result, curve)[0])
-    return np.full_like(mean, np.nan)
+    if name not in ("force", "pressure") or not holds(result, curve):
+        return np.full_like(mean, np.nan)
+    error, size = mean_of(result, curve)[0], np.abs(mean)
+    hills = adheres(parse_toml(result.attrs["scene"])) and np.isnan(_largest(result, "overlap_fraction"))
+    by_jkr = np.where(hills, np.inf, _largest(result, "adhesion_range_error"))[..., None]
+    over_largest = np.minimum(error, by_jkr)
+    return np.asarray(size * (error - over_largest) + np.fmax.reduce(size, axis=-1, keepdims=True) * over_largest)
+
+
+def _largest(result: Labelled, name: str) -> Floats:
+    """Return the largest of a diagnostic over the realisations of each cell; NaN where none is known."""
+    array = result.variables[name]
+    return np.asarray(np.fmax.reduce(array.values, axis=-1) if "realization" in array.dims else array.values)

@@ -169,7 +169,7 @@ def _trust(known: dict[str, Floats], coefficients: Coefficients | None, interact
     place, rest, beyond = "along the whole path", "", known["trusted_separation"]
     if beyond.size:
         whole = sum(parts.values())
-        there = f"within {_percent(whole)}" if whole < 1.0 else "it may be off by all of it or more"
+        there = f"within {_percent(whole)}" if whole < 1.0 else "the force may be off by all of it or more"
         left_out = "asperities interact, which this scene leaves out" if interaction is None else "it is farther off"
         rest = f"; below it {left_out}: {there} at closest approach"
         parts["interaction_error"] = float(interaction_error(np.array(TRUSTED_FRACTION), coefficients or ASPERITIES))
@@ -185,7 +185,7 @@ def _coupling(known: dict[str, Floats], summits: bool) -> str:
     """Return how asperities are coupled, the error, and that of independent ones in their place."""
     error, overlap = (float(known[name].max(initial=0.0)) for name in ("interaction_error", "overlap_fraction"))
     if not known["overlap_fraction"].size:  # of hills it has no meaning
-        return f"hills of a map are coupled in pairs: force at closest approach within {_percent(error)}"
+        return f"hills of a map are coupled in pairs: force along the path within {_percent(error)}"
     fraction = float(known["largest_contact_fraction"].max())
     independent = _interaction(fraction, SUMMITS if summits else ASPERITIES)
     on_grid = int((known["grid_points"] > 0.0).sum())
@@ -234,7 +234,7 @@ def _advice(known: dict[str, Floats], coefficients: Coefficients | None) -> str:
 def _coefficients(known: dict[str, Floats]) -> Coefficients | None:
     """Return the coefficients that the error by interaction was estimated with; None of one by distances."""
     error, fraction = known["interaction_error"].max(), known["largest_contact_fraction"].max()
-    kinds = (ASPERITIES, SUMMITS) if known["overlap_fraction"].size else (HILLS,)  # of hills it has no meaning
+    kinds = (ASPERITIES, SUMMITS) if known["overlap_fraction"].size else (HILLS,)  # hills have no overlap
     by_fraction = {kind: float(interaction_error(fraction, kind)) for kind in kinds}
     return next((kind for kind, of in by_fraction.items() if math.isclose(error, of, rel_tol=_ROUNDING)), None)
 

@@ -14,7 +14,12 @@ CURVE_VARIABLES = declare(
     ("energy", "J", "elastic and surface energy of all contacts, 0 out of contact"),
     ("dissipated_energy", "J", "energy lost in jumps since the start of the path"),
     ("machine_dissipated_energy", "J", "part of it that the machine loses in its jumps; 0 under fixed grips"),
-    ("model_error_curve", "1", "estimated relative error of the force by the assumptions of the model"),
+    (
+        "model_error_curve",
+        "1",
+        "estimated relative error of the force by the assumptions of the model; parts "
+        "by JKR are over the largest force",
+    ),
 )
 """Variables of the contacts."""
 

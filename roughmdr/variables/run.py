@@ -74,7 +74,7 @@ RUN_DIAGNOSTICS = _diagnostics(
         "overlap_fraction",
         "1",
         "share of the contacts that reach into a neighbour's, at closest approach; with pairwise interaction the share "
-        "of the force that they carry",
+        "of the force that they carry; none for hills",
     ),
     Diagnostic(
         "overlap_count",

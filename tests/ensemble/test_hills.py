@@ -270,7 +270,7 @@ def test_what_is_said_of_hills(map_file: Path, tmp_path: Path) -> None:
     result = rm.run(of_hills(map_file, interaction={"model": "pairwise"}), tmp_path / "out.nc")
     assert np.isnan(result.trusted_separation).all()
     said = CliRunner().invoke(main, ["info", str(tmp_path / "out.nc")]).output
-    assert "hills of a map are coupled in pairs: force at closest approach within" in said
+    assert "hills of a map are coupled in pairs: force along the path within" in said
     assert "the map resolves its hills" in said
     (tmp_path / "hills.toml").write_text(tomli_w.dumps(of_hills(map_file)))
     saved = (

@@ -162,6 +162,22 @@ def test_the_error_of_an_adhesive_hill_goes_by_whether_it_may_have_jumped_on(
     np.testing.assert_allclose(stiff.model_error_curve, error, rtol=1e-3)
 
 
+def test_a_hill_far_below_a_flat_that_a_dead_load_has_pulled_off_is_in_no_doubt() -> None:
+    """A hill that is no paraboloid detaches at another depth than one; the flat has flown away at all steps but one."""
+    at = {name: ("asperity", [value], {"units": "m"}) for name, value in {"x": 0.2, "y": 0.5, "height": 0.0}.items()}
+    form = {"exponent": ("asperity", [1.2], {"units": "1"}), "width": ("asperity", [0.1], {"units": "m"})}
+    hill = xr.Dataset(
+        {**at, **form, "rise": ("asperity", [5e-6], {"units": "m"})},
+        attrs={"shape": "power_law", "patch": 1.0, "asperity_model": "hills"},
+    )
+    law = rm.load_separation(
+        hill, force=[-1.0, 10.0, -1e4], effective_modulus=1e9, work=0.01, interaction={"model": "pairwise"},
+        variables=["model_error_curve"],
+    )  # fmt: skip
+    assert np.isnan(law.separation.values).tolist() == [True, False, True]
+    assert (law.model_error_curve.values > 0.0).tolist() == [False, True, False]
+
+
 def test_overlapping_contacts_of_adhesive_hills_are_in_doubt_as_a_whole() -> None:
     """Contacts of a radius of 5 cm: 6 cm apart they overlap, 40 cm apart they do not."""
 

@@ -12,6 +12,7 @@ from scenes import ASPERITIES, scene
 
 import roughmdr as rm
 from roughmdr.cli import main
+from roughmdr.pictures.curves import Quantity, curves_of
 from roughmdr.pictures.style import BRANCH_COLOURS
 from roughmdr.storage.labelled import Labelled
 
@@ -262,3 +263,36 @@ def test_two_values_of_one_key_are_refused(tmp_path: Path) -> None:
     run = CliRunner().invoke(main, ["plot", str(made), "-o", str(tmp_path / "out.png"), *chosen])
     assert (run.exit_code, (tmp_path / "out.png").exists()) == (2, False)
     assert "adhesion.work has a value already, 0.01" in run.output
+
+
+@pytest.mark.parametrize("keep", ["curves", "statistics"])
+@pytest.mark.parametrize("hills", [False, True])
+def test_the_band_of_the_model_error_is_over_the_largest_force_where_the_error_is(
+    hills: bool, keep: str, tmp_path: Path
+) -> None:
+    """That of hills by JKR is there before touch, where the force is 0."""
+    one = {"height": 0.0, "radius": 1e3, "x": 0.2, "y": 0.5}
+    surface = xr.Dataset(
+        {name: ("asperity", [value], {"units": "m"}) for name, value in one.items()},
+        attrs={"shape": "paraboloid", "patch": 1.0, **({"asperity_model": "hills"} if hills else {})},
+    )
+    surface.to_netcdf(tmp_path / "one.nc")
+    made = rm.run(
+        scene(
+            asperities={"source": "file", "file": str(tmp_path / "one.nc")},
+            material={"effective_modulus": "1 GPa"}, adhesion={"model": "jkr", "work": "10 mJ/m^2"},
+            interaction={"model": "pairwise"}, path={"separation": ["1 um", "0.5 um", "-1 um", "0.5 um"]},
+            output={"variables": ["force", "model_error_curve"], "keep": keep}, batch={"realizations": 1},
+        )
+    )  # fmt: skip
+    result = Labelled.of(made)
+    curves = list(curves_of(result, Quantity.of(result, "force"), Quantity.of(result, "separation")))
+    error = made.model_error_curve if keep == "curves" else made.model_error_curve_mean
+    down, back, error = curves[0].model_error, curves[-1], error.values.ravel()
+    largest = max(np.abs(each.middle).max() for each in curves)
+    assert (down[:2] > 0.0).tolist() == [False, hills]
+    loads = [abs(float(curves[0].middle[2])), abs(float(back.middle[-1]))]
+    for load, at, drawn in zip(loads, error[2:], (down[2], back.model_error[-1]), strict=True):
+        by_jkr = at if hills else float(made.adhesion_range_error.max())
+        assert by_jkr > 0.0
+        assert drawn == pytest.approx(load * (at - by_jkr) + largest * by_jkr, rel=1e-12)

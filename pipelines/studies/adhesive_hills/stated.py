@@ -14,7 +14,7 @@ from studies.study import named, table
 SETS = ("calibration", "validation")
 _FEWEST, _MOST = 144, 324
 """Points of a grid a side: as many as resolve the cohesive zone; the Tabor number is at most one that they resolve."""
-_SEEN = 0.02  # of the largest force: a smaller error of a step is not asked for
+_SEEN = 0.02  # least error of a step that counts, over the largest force
 FACTOR = 3.0
 """The stated error over the largest one that is no more than it should be."""
 
@@ -39,9 +39,9 @@ class Stated(NamedTuple):
     """Errors of hills in pairs on a map, over their largest force, at most 1 as the stated one is."""
 
     rms: float
-    """Of the steps with a visible error."""
+    """Root mean square over the steps whose error counts."""
     largest: float
-    """Of a step."""
+    """Largest of a step."""
     stated: float
     """The ``model_error``."""
     inside: float

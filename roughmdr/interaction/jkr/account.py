@@ -20,7 +20,7 @@ from roughmdr.numerics.arguments import Floats
 from roughmdr.schema.units import format_quantity
 
 _SOLVER_ERROR = 1e-11  # of all loads
-_STRETCH = 3.0 * 4.0 ** (-4.0 / 3.0)  # of a paraboloid where it detaches, over its natural depth
+_STRETCH = 3.0 * 4.0 ** (-4.0 / 3.0)  # stretch at which a paraboloid detaches, over its natural depth
 
 
 class Adhering(NamedTuple):
@@ -89,7 +89,7 @@ class Account:
 
     def stand(self, state: State, separation: float, *, rises: bool) -> None:
         """Add a step at a separation [m], to which the flat has risen or come down."""
-        self._steps.append(self._totals(state))
+        self._steps.append(self._totals(state, flown=math.isinf(separation)))
         self._separation.append(separation)
         self._parted |= rises and not state.inside.any()
         closer = state.separation < self._closest
@@ -113,12 +113,12 @@ class Account:
             self._crowded(),
         )
 
-    def _totals(self, state: State) -> Step:
+    def _totals(self, state: State, *, flown: bool) -> Step:
         problem, length = self._front.problem, self._length
         lost = self.dissipated + self.machine_dissipated, self.machine_dissipated
         overlapping = np.zeros(state.t.size, np.bool_)
         close.mark_overlaps(problem.near.pairs, np.where(state.inside, state.contacts.radius, 0.0), overlapping)
-        doubted, held = self._pull_offs(state, overlapping) if self._reach > 0.0 else (0.0, 0.0)
+        doubted, held = self._pull_offs(state, overlapping) if self._reach > 0.0 and not flown else (0.0, 0.0)
         if not state.inside.any():
             return Step(dissipated=lost[0], by_machine=lost[1], doubted=doubted)
         on = np.flatnonzero(state.inside)
