@@ -153,15 +153,15 @@ def test_a_lone_contact_on_a_patch_goes_to_the_lone_one_as_the_patch_grows() -> 
 def at_rest(ensemble: Ensemble, units: Units, h: Floats, order: int) -> list[tuple[Problem, State]]:
     """Return the problem and the state at each separation [d0] where there are contacts."""
     states = []
-    totals = Account._totals
+    stand = Account.stand
 
-    def noting(self: Account, state: State) -> object:
+    def noting(self: Account, state: State, separation: float, *, rises: bool) -> None:
         if state.inside.any():
             states.append((self._front.problem, state))
-        return totals(self, state)
+        stand(self, state, separation, rises=rises)
 
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(Account, "_totals", noting)
+        patch.setattr(Account, "stand", noting)
         found = follow(ensemble, units, h, order=order)
     assert all(math.isfinite(step.error) for step in found.steps)
     assert all(each.dissipated > 0.0 for each in found.avalanches)
