@@ -13,9 +13,9 @@ import numpy as np
 import pytest
 import tomli_w
 import xarray as xr
+from command import ROUGHMDR, roughmdr
 from pydantic import BaseModel
 from scenes import ASPERITIES, scene
-from test_cli import ROUGHMDR, roughmdr
 
 import roughmdr as rm
 from roughmdr.scene.scene import Scene

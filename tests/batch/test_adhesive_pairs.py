@@ -1,7 +1,5 @@
 """Scenes of asperities that adhere and feel each other: the whole way from the table to the file."""
 
-import subprocess
-import sys
 import warnings
 from pathlib import Path
 from typing import Any
@@ -10,6 +8,7 @@ import numpy as np
 import pytest
 import tomli_w
 import xarray as xr
+from command import roughmdr
 from scenes import scene
 
 import roughmdr as rm
@@ -62,10 +61,7 @@ def test_commands_foresee_and_describe_them(tmp_path: Path) -> None:
     (tmp_path / "scene.toml").write_text(tomli_w.dumps(sticky()))
 
     def command(*words: str) -> str:
-        done = subprocess.run(
-            [sys.executable, "-c", "from roughmdr.cli import main; main()", *words],
-            cwd=tmp_path, capture_output=True, text=True, check=False,
-        )  # fmt: skip
+        done = roughmdr(*words, cwd=tmp_path)
         assert done.returncode == 0, done.stderr
         return done.stdout
 

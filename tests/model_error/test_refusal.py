@@ -1,7 +1,5 @@
 """Contact areas above the patch are refused before the run, with the likely cause."""
 
-import subprocess
-import sys
 from pathlib import Path
 from typing import Any
 from unittest.mock import patch
@@ -9,6 +7,7 @@ from unittest.mock import patch
 import numpy as np
 import pytest
 import tomli_w
+from command import roughmdr
 from scenes import SCENE, ensemble, scene
 
 import roughmdr as rm
@@ -29,8 +28,7 @@ def test_a_run_with_more_contact_than_patch_is_refused_before_anything_is_writte
 ) -> None:
     file = tmp_path / "scene.toml"
     file.write_text(tomli_w.dumps(scene(**changes)))
-    command = [sys.executable, "-m", "roughmdr", "run", str(file), "-o", str(tmp_path / "out.nc")]
-    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    done = roughmdr("run", file, "-o", tmp_path / "out.nc", cwd=tmp_path)
     assert done.returncode == 2
     assert cause in done.stderr
     assert "runs" not in done.stderr  # no progress: nothing was run

@@ -14,8 +14,8 @@ import tomli_w
 import xarray as xr
 from batches import CURVES, RUNS, Batch, assert_result, interrupted, kept, mounted, running, write_scene
 from click.testing import CliRunner
+from command import ROUGHMDR, roughmdr
 from scenes import ASPERITIES, scene
-from test_cli import ROUGHMDR, roughmdr
 
 import roughmdr as rm
 from roughmdr.batch.resume.store import store_folder

@@ -10,9 +10,9 @@ from typing import Any
 import numpy as np
 import pytest
 from click.testing import CliRunner
+from command import ROUGHMDR
 from foreign import ODD, Content, Variable, content_of, control_characters
 from foreign_commands import OF_INPUT, OF_RESULT, RESULTS, all_failed, checked, filled, put, remarked
-from test_cli import ROUGHMDR
 
 from roughmdr.cli import main
 

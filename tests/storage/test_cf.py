@@ -8,8 +8,9 @@ from typing import Any
 import numpy as np
 import pytest
 import tomli_w
+from command import roughmdr
 from scenes import ASPERITIES, CONDUCTION, scene
-from test_cli import SCENES, roughmdr
+from test_cli import SCENES
 
 from roughmdr.variables import CONDUCTANCES, CURVE_VARIABLES
 
