@@ -142,7 +142,7 @@ _ALWAYS_HEAVY = {"dask", "matplotlib", "xarray", "pandas", "scipy", "numba"}
         (["plot", "out.nc", "-o", "x.png"], {"matplotlib"}),
         (["plot", "out.nc", "-o", "x.png", "--kind", "map"], {"matplotlib", "scipy", "numba"}),
         (["report", "out.nc", "-o", "x.html"], {"matplotlib"}),
-        (["export", "out.nc", "-o", "x.inp", "--to", "abaqus"], {"scipy"}),  # refused, it reads the scene for advice
+        (["export", "out.nc", "-o", "x.inp", "--to", "abaqus"], {"scipy"}),  # refused, it reads the scene
         (
             ["export", "out.nc", "-o", "x.csv", "--to", "csv", "--quantity", "nodes", "--error", "0.1"],
             {"scipy", "numba"},
