@@ -29,6 +29,7 @@ from batches import (
     running,
     until,
 )
+from forms import large
 
 from roughmdr.batch.plan import make_plan
 from roughmdr.errors import RoughmdrError
@@ -90,7 +91,7 @@ def two(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Dask]:
         yield cluster
 
 
-@pytest.mark.parametrize("runs_per_task", [1, 7, 64])
+@pytest.mark.parametrize("runs_per_task", [large(1), 7, large(64)])
 @pytest.mark.parametrize("keep", ["curves", "statistics"])
 def test_the_same_bits_from_a_cluster(two: Dask, keep: str, runs_per_task: int, request: pytest.FixtureRequest) -> None:
     plan = make_plan(read(CURVES if keep == "curves" else STATISTICS))
@@ -103,7 +104,7 @@ def test_the_same_bits_from_a_cluster(two: Dask, keep: str, runs_per_task: int, 
 @pytest.mark.parametrize(
     ("scheduler", "workers"), [("threads", 1), ("threads", 2), ("threads", 3), ("processes", 2), ("processes", 3)]
 )
-@pytest.mark.parametrize(("keep", "runs_per_task"), [("curves", 7), ("statistics", 64), ("statistics", 1)])
+@pytest.mark.parametrize(("keep", "runs_per_task"), [("curves", 7), large("statistics", 64), large("statistics", 1)])
 def test_the_same_bits_from_threads_and_processes(
     scheduler: str, workers: int, keep: str, runs_per_task: int, request: pytest.FixtureRequest
 ) -> None:
@@ -140,6 +141,7 @@ def test_few_tasks_are_in_flight(two: Dask) -> None:
     assert max(seen) <= 2 * 2 + 1  # one that is done may not be forgotten yet
 
 
+@pytest.mark.large
 def test_an_interrupt_lets_the_tasks_in_flight_end(two: Dask, folder: Path, curves: xr.Dataset) -> None:
     with running(Batch(folder, "--scheduler", two.address)) as batch:
         batch.wait_for_lines(5)
@@ -178,6 +180,7 @@ def test_workers_that_die_and_workers_that_come(tmp_path: Path, folder: Path, cu
     assert_clean(folder)
 
 
+@pytest.mark.large
 @pytest.mark.slow
 def test_without_workers_two_interrupts_end_it(tmp_path: Path, folder: Path) -> None:
     with dask(tmp_path, 0) as cluster, running(Batch(folder, "--scheduler", cluster.address)) as batch:
@@ -192,6 +195,7 @@ def test_without_workers_two_interrupts_end_it(tmp_path: Path, folder: Path) -> 
     assert_no_traceback(said)
 
 
+@pytest.mark.large
 @pytest.mark.slow
 def test_a_scheduler_that_dies_is_told_of_and_threads_go_on(tmp_path: Path, folder: Path, curves: xr.Dataset) -> None:
     with dask(tmp_path, 1) as cluster, running(Batch(folder, "--scheduler", cluster.address)) as batch:
@@ -249,6 +253,7 @@ def test_a_server_that_is_no_scheduler_is_told(says: bytes | None, monkeypatch: 
         thread.join()
 
 
+@pytest.mark.large
 def test_a_run_over_a_cluster_does_not_listen(two: Dask, folder: Path) -> None:
     with running(Batch(folder, "--scheduler", two.address)) as batch:
         batch.wait_for_lines(2)
