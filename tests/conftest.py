@@ -18,8 +18,8 @@ from roughmdr.shapes import SHAPES, Shape
 
 COMPILED = {"paraboloid", "sphere", "truncated_cone", "tabulated"}
 """Shapes whose tests are no long forms where functions are compiled; those of the others run uncompiled instead."""
-COMPILING = ("aggregate", "asperity", "interaction", "kernels", "shapes", "springs")
-"""Folders with tests of shapes, all of which run uncompiled."""
+COMPILING = ("aggregate", "asperity", "batch", "expected", "interaction", "kernels", "shapes", "springs")
+"""Folders whose tests compile functions of the shapes that they name."""
 _PARTS = re.compile("|".join(sorted(SHAPES, key=len, reverse=True)))
 
 
@@ -82,8 +82,8 @@ def pytest_collection_modifyitems(items: Iterable[pytest.Item]) -> None:
     """Mark tests of other shapes as long forms where functions are compiled, which takes the most of their time."""
     for item in [] if numba.config.DISABLE_JIT else items:
         if item.path.relative_to(Path(__file__).parent).parts[0] in COMPILING and isinstance(item, pytest.Function):
-            given = getattr(item, "callspec", None)
-            if given is not None and not _shapes_in([given.id, *given.params.values()]) <= COMPILED:
+            given = item.callspec.params.values() if hasattr(item, "callspec") else ()
+            if not _shapes_in([item.path.stem, item.name, *given]) <= COMPILED:
                 item.add_marker("large")
 
 

@@ -244,6 +244,7 @@ def test_advice_says_which_model_to_believe(changes: dict[str, Any], advised: st
     assert advised in done.output
 
 
+@pytest.mark.large
 def test_the_error_is_relative_to_the_force_that_is_asked_for() -> None:
     coarse, fine = (rm.run(of_spectrum(reference={**ELEMENTS, "error": each})) for each in (0.2, 0.005))
     assert float(coarse["reference_points"].max()) < float(fine["reference_points"].max())

@@ -220,6 +220,7 @@ def effective_work(modulus: float, deepest: float) -> float:
     return float(np.maximum(tension, 0.0).sum() * (s[1] - s[0]))
 
 
+@pytest.mark.large
 def test_pull_off_lies_between_those_of_jkr_and_of_a_rigid_bulk() -> None:
     """-3/2 pi w R where the bulk is compliant over the range of the layer; w its own work of separation."""
     modulus, down = 1e6, np.linspace(20.0, -20.0, 30) * STD

@@ -167,6 +167,7 @@ def test_a_map_is_written_alike_each_time(sticky: Labelled, tmp_path: Path, kind
     assert written[0] == written[1]
 
 
+@pytest.mark.large
 def test_a_result_by_boundary_elements_is_said_to_be_one() -> None:
     coupled = {"model": "pairwise", "beyond": "boundary_elements"}
     crowd = asperities(count=40, patch="0.1 mm")
