@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 import tomli_w
 import xarray as xr
-from command import ROUGHMDR, roughmdr
+from command import ROUGHMDR, in_a_process, roughmdr
 from pydantic import BaseModel
 from scenes import ASPERITIES, scene
 
@@ -91,7 +91,7 @@ with open("/proc/self/status") as status:
 @pytest.mark.skipif(not Path("/proc/self/status").exists(), reason="the peak of a process is read from /proc")
 def test_the_plan_says_what_the_run_then_does(folder: Path) -> None:
     large = ["--set", "asperities.count=300000", "--set", "asperities.patch=0.02", "--set", "batch.realizations=6"]
-    done = roughmdr("plan", "small.toml", *large, cwd=folder)
+    done = in_a_process("plan", "small.toml", *large, cwd=folder)
     assert done.returncode == 0, done.stderr
     assert [path.name for path in folder.iterdir()] == ["small.toml"]
     assert "6 realisations x 80 steps: 6 in total" in done.stdout

@@ -292,6 +292,7 @@ def gone(processes: list[psutil.Process]) -> None:
     until(lambda: all(map(is_gone, processes)), 10.0)
 
 
+@pytest.mark.large
 def test_a_worker_process_that_is_killed_is_replaced(folder: Path, curves: xr.Dataset) -> None:
     with running(Batch(folder, "--scheduler", "processes")) as batch:
         batch.wait_for_lines(5)
