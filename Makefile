@@ -7,7 +7,9 @@ VENV   := .venv
 BIN    := $(VENV)/bin
 READY  := $(VENV)/ready
 TESTS  := $(BIN)/python -m pytest -n auto
-UNCOMPILED := $(addprefix tests/,aggregate asperity interaction kernels numerics shapes springs)
+UNCOMPILED := $(addprefix tests/,asperity kernels numerics shapes \
+  $(addsuffix .py,$(addprefix aggregate/test_,few_searches machine shapes_in_ensembles sum) \
+  $(addprefix interaction/test_,close contacts green jkr_parts jkr_shapes)))
 
 .PHONY: demo test test-all docs studies setup lint lock release clean
 

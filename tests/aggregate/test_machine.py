@@ -3,6 +3,7 @@
 import math
 from itertools import pairwise
 
+import numba
 import numpy as np
 import pytest
 import xarray as xr
@@ -310,6 +311,7 @@ def test_a_preload_without_a_spring_is_the_path_of_those_separations() -> None:
         np.testing.assert_array_equal(found[name], same[name])
 
 
+@pytest.mark.skipif(numba.config.DISABLE_JIT, reason="it takes minutes")
 @pytest.mark.parametrize("model", ["pairwise", "mean_field"])
 def test_asperities_that_feel_each_other_are_loaded_to_the_same_preload(model) -> None:
     ensemble = rm.generate({**SECTION, "placement": "random"}, seed=8)
