@@ -14,6 +14,7 @@ import pytest
 import tomli_w
 import xarray as xr
 from command import ROUGHMDR, in_a_process, roughmdr
+from forms import large
 from pydantic import BaseModel
 from scenes import ASPERITIES, scene
 
@@ -188,7 +189,7 @@ def test_messages_are_in_colour_on_a_terminal_and_plain_elsewhere(folder: Path) 
     assert "\x1b" not in on_a_terminal(*command, cwd=folder, NO_COLOR="1")
 
 
-@pytest.mark.parametrize("elsewhere", [True, False])
+@pytest.mark.parametrize("elsewhere", [True, large(False)])
 def test_it_works_where_the_home_folder_cannot_be_written(folder: Path, elsewhere: bool) -> None:
     """Compiled code goes where NUMBA_CACHE_DIR says, or nowhere. Root may write anywhere: a file stands in the way."""
     (folder / "home").write_text("no folder")

@@ -9,6 +9,7 @@ import pytest
 import tomli_w
 import xarray as xr
 from command import roughmdr
+from forms import large
 from scenes import scene
 
 import roughmdr as rm
@@ -32,6 +33,7 @@ def sticky(realizations: int = 4, **changes: Any) -> dict[str, Any]:
     return scene(batch={"realizations": realizations}, **{**table, **changes})
 
 
+@pytest.mark.large
 def test_results_are_bit_for_bit_those_of_any_number_of_workers_and_of_a_resume(tmp_path: Path) -> None:
     one = rm.run(sticky(), out=tmp_path / "one.nc", workers=1)
     two = rm.run(sticky(), out=tmp_path / "two.nc", workers=2)
@@ -90,7 +92,9 @@ def test_contacts_that_overlap_as_soon_as_they_are_made_are_told() -> None:
     assert any("(1 pairs): jump-on radius 5.84 um, distance 11 um" in line for line in told), told
 
 
-@pytest.mark.parametrize("interaction", [{"model": "pairwise", "order": 1}, {"model": "pairwise", "boundary": "free"}])
+@pytest.mark.parametrize(
+    "interaction", [large({"model": "pairwise", "order": 1}), {"model": "pairwise", "boundary": "free"}]
+)
 def test_steps_without_an_equilibrium_have_no_value_and_are_marked(tmp_path: Path, interaction: Any) -> None:
     """Contacts pressed into each other until they cover the patch; the file holds what there is, and can be read."""
     crowded = {**FEW, "patch": "60 um", "placement": "random", "height": {"distribution": "normal", "std": "3 um"}}

@@ -92,7 +92,7 @@ def placed(count: int, side: float, reach: float, seed: int) -> tuple[Floats, Fl
 
 
 @pytest.mark.parametrize("seed", [1, large(2)])
-@pytest.mark.parametrize("boundary", ["free", "periodic"])
+@pytest.mark.parametrize("boundary", ["free", large("periodic")])
 def test_unequal_contacts_against_their_exact_modes(boundary: str, seed: int) -> None:
     side = 16.0
     x, y, radius = placed(8, side, 1.5, seed)

@@ -96,6 +96,7 @@ def test_what_is_kept_is_found_by_way_of_a_link_and_without(
     assert names(target.parent) == ["real.nc"]
 
 
+@pytest.mark.large
 def test_a_link_and_what_it_leads_to_have_one_lock(folder: Path, curves: xr.Dataset) -> None:
     (folder / "out.nc").symlink_to("scratch/real.nc")
     (folder / "scratch").mkdir()

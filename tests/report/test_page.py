@@ -85,6 +85,7 @@ def test_a_page_holds_all_of_it_and_needs_no_other_file(tmp_path: Path, changes:
     assert "prefers-color-scheme: dark" in text
 
 
+@pytest.mark.large
 def test_the_same_result_gives_the_same_page_which_is_replaced_and_nothing_else_is(tmp_path: Path) -> None:
     _, first = written(tmp_path)
     rm.write_report(tmp_path / "out.nc", tmp_path / "report.html")

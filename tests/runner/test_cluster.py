@@ -216,6 +216,7 @@ def test_a_scheduler_that_dies_is_told_of_and_threads_go_on(tmp_path: Path, fold
     assert_clean(folder)
 
 
+@pytest.mark.large
 def test_no_scheduler_there_is_said_at_once(folder: Path) -> None:
     with socket.socket() as unused:
         unused.bind(("127.0.0.1", 0))  # nobody listens
@@ -285,6 +286,18 @@ def test_encrypted(tmp_path: Path, folder: Path, curves: xr.Dataset) -> None:
     ca, *others = options
     with dask(tmp_path, 1, f"{ca}-file", *others, "--protocol", "tls") as cluster:
         assert cluster.address.startswith("tls://127.0.0.1:")
+        with running(Batch(folder, "--scheduler", cluster.address, *options)) as batch:
+            assert batch.succeed() == RUNS
+    assert_result(folder, curves)
+    assert_clean(folder)
+
+
+@pytest.mark.large
+@pytest.mark.skipif(shutil.which("openssl") is None, reason="openssl makes the certificates")
+def test_who_may_not_connect_is_told_why(tmp_path: Path, folder: Path) -> None:
+    options = certified(tmp_path)
+    ca, *others = options
+    with dask(tmp_path, 1, f"{ca}-file", *others, "--protocol", "tls") as cluster:
         without_key = [*options[:-1], str(tmp_path / "none.pem")]
         strangers = tmp_path / "strangers"
         strangers.mkdir()
@@ -304,7 +317,3 @@ def test_encrypted(tmp_path: Path, folder: Path, curves: xr.Dataset) -> None:
             status, said = batch.end()
         assert status == 2, said
         assert "--tls-ca, --tls-cert and --tls-key must be given together" in said
-        with running(Batch(folder, "--scheduler", cluster.address, *options)) as batch:
-            assert batch.succeed() == RUNS
-    assert_result(folder, curves)
-    assert_clean(folder)

@@ -346,6 +346,7 @@ def test_a_run_whose_process_always_dies_has_failed_and_the_others_are_done(fold
 # Runs that fail
 
 
+@pytest.mark.large
 def test_a_cell_that_cannot_be_computed_stands_alone(folder: Path) -> None:
     swept = slow_scene(12, count=1000, sweep={"asperities.radius": ["1e-300 m", "20 um", "50 um"]})
     write_scene(folder, swept)
