@@ -15,6 +15,7 @@ _AGAIN = """
 import sys, roughmdr
 for name in [name for name in sys.modules if name.startswith("roughmdr")]:
     del sys.modules[name]
+from forms import large
 import roughmdr, xarray, roughmdr
 """
 _THREADS = """
@@ -52,7 +53,9 @@ assert xarray.__spec__.loader is xarray.__loader__
 
 
 @pytest.mark.parametrize(
-    "order", [_LATER, _FIRST, _AGAIN, _THREADS, _LOOKED_FOR, _FAILED], ids=lambda order: order.strip().split("\n")[0]
+    "order",
+    [_LATER, _FIRST, *map(large, [_AGAIN, _THREADS, _LOOKED_FOR, _FAILED])],
+    ids=lambda order: order.strip().split("\n")[0],
 )
 def test_it_is_registered_once_xarray_is_there(order: str) -> None:
     done = subprocess.run(

@@ -10,6 +10,7 @@ import pytest
 import tomli_w
 import xarray as xr
 from click.testing import CliRunner
+from forms import large
 from oracles.boundary_elements import HeightMap
 from scenes import scene
 
@@ -225,7 +226,7 @@ def test_commands_tell_and_draw_it(tmp_path: Path) -> None:
     [
         ({"reference": None}, "believe boundary elements most"),
         ({"reference": None, "interaction": None}, 'or take asperities.model = "hills" with [interaction]'),
-        (
+        large(
             {"reference": None, "adhesion": {"model": "jkr", "work": 1e-6}},
             "believe hills in pairs as far as they have values",
         ),

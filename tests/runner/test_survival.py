@@ -164,7 +164,12 @@ netCDF4.Dataset.__exit__ = sync
 
 @pytest.mark.parametrize(
     "damage",
-    ["torn line", "odd lines", "no first line", "file", "no file", "every file", "nothing left", "leftovers"],
+    [
+        "torn line",
+        *map(large, ["odd lines", "no first line", "file", "no file", "every file"]),
+        "nothing left",
+        "leftovers",
+    ],
 )
 def test_only_what_is_damaged_is_computed_again(
     left: Path, curves: xr.Dataset, capsys: pytest.CaptureFixture[str], damage: str
@@ -504,7 +509,7 @@ def test_two_batches_do_not_write_one_result(folder: Path, curves: xr.Dataset) -
     assert_clean(folder)
 
 
-@pytest.mark.parametrize("scheduler", [large("threads"), "processes"])
+@pytest.mark.parametrize("scheduler", [*map(large, ["threads", "processes"])])
 def test_nothing_listens(folder: Path, scheduler: str) -> None:
     with running(Batch(folder, "--scheduler", scheduler)) as batch:
         batch.wait_for_lines(2)
