@@ -4,6 +4,7 @@ import subprocess
 import sys
 
 import pytest
+from forms import large
 
 _LATER = """
 import sys, roughmdr
@@ -15,7 +16,6 @@ _AGAIN = """
 import sys, roughmdr
 for name in [name for name in sys.modules if name.startswith("roughmdr")]:
     del sys.modules[name]
-from forms import large
 import roughmdr, xarray, roughmdr
 """
 _THREADS = """
