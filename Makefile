@@ -1,7 +1,8 @@
 # make demo: set up, compute a rough adhesive contact, show it.   make test: set up, run every check, build the docs.
 # make test-all: the long forms of tests as well, some 40 minutes more.
 # make docs: build the documentation into docs/_build/html, examples and all.
-# make studies: measure error against run time, the extremes, and what leaving out saves; report in results/studies.
+# make studies: measure error against run time, the extremes, and what leaving out saves, in reduced forms that say what
+# they leave out; report in results/studies. make studies-full: all of it, an hour.
 PYTHON ?= python3
 VENV   := .venv
 BIN    := $(VENV)/bin
@@ -11,7 +12,7 @@ UNCOMPILED := $(addprefix tests/,asperity kernels numerics shapes \
   $(addsuffix .py,$(addprefix aggregate/test_,few_searches machine shapes_in_ensembles sum) \
   $(addprefix interaction/test_,close contacts green jkr_parts jkr_shapes)))
 
-.PHONY: demo test test-all docs studies setup lint lock release clean
+.PHONY: demo test test-all docs studies studies-full setup lint lock release clean
 
 demo: setup
 	@mkdir -p results
@@ -32,6 +33,9 @@ docs: setup
 	@echo "docs/_build/html/index.html"
 
 studies: setup
+	@$(BIN)/python pipelines/all_studies.py --quick -o results/studies
+
+studies-full: setup
 	@$(BIN)/python pipelines/all_studies.py -o results/studies
 
 lint: setup

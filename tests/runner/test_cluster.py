@@ -158,7 +158,6 @@ def test_an_interrupt_lets_the_tasks_in_flight_end(two: Dask, folder: Path, curv
     assert_clean(folder)
 
 
-@pytest.mark.slow
 def test_workers_that_die_and_workers_that_come(tmp_path: Path, folder: Path, curves: xr.Dataset) -> None:
     """One of two dies: the other goes on. That one too: the batch waits. A new one comes: it goes on."""
     with dask(tmp_path, 2) as cluster, running(Batch(folder, "--scheduler", cluster.address)) as batch:
@@ -181,7 +180,6 @@ def test_workers_that_die_and_workers_that_come(tmp_path: Path, folder: Path, cu
 
 
 @pytest.mark.large
-@pytest.mark.slow
 def test_without_workers_two_interrupts_end_it(tmp_path: Path, folder: Path) -> None:
     with dask(tmp_path, 0) as cluster, running(Batch(folder, "--scheduler", cluster.address)) as batch:
         until((folder / "out.nc.parts" / "manifest.jsonl").exists)
@@ -196,7 +194,6 @@ def test_without_workers_two_interrupts_end_it(tmp_path: Path, folder: Path) -> 
 
 
 @pytest.mark.large
-@pytest.mark.slow
 def test_a_scheduler_that_dies_is_told_of_and_threads_go_on(tmp_path: Path, folder: Path, curves: xr.Dataset) -> None:
     with dask(tmp_path, 1) as cluster, running(Batch(folder, "--scheduler", cluster.address)) as batch:
         batch.wait_for_lines(5)
@@ -279,7 +276,6 @@ def certified(folder: Path) -> list[str]:
     return [text for option, name in names.items() for text in (f"--tls-{option}", str(folder / name))]
 
 
-@pytest.mark.slow
 @pytest.mark.skipif(shutil.which("openssl") is None, reason="openssl makes the certificates")
 def test_encrypted(tmp_path: Path, folder: Path, curves: xr.Dataset) -> None:
     options = certified(tmp_path)

@@ -72,7 +72,6 @@ def resume(folder: Path, capsys: pytest.CaptureFixture[str], base: xr.Dataset) -
 # Killed
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(("keep", "kills"), [("curves", 3), large("curves", 14), large("statistics", 6)])
 def test_killed_again_and_again_it_comes_to_the_same_bits(
     tmp_path: Path, keep: str, kills: int, request: pytest.FixtureRequest
@@ -321,7 +320,6 @@ def test_no_worker_process_outlives_a_killed_batch(folder: Path) -> None:
 
 
 @pytest.mark.large
-@pytest.mark.slow
 def test_a_run_whose_process_always_dies_has_failed_and_the_others_are_done(folder: Path) -> None:
     """A system out of memory kills whatever takes too much; here the test does it in its place."""
     counts = [100, 200, 6_000_000, 300, 400]
