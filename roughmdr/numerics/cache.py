@@ -19,6 +19,7 @@ from typing import Any, NamedTuple, cast
 
 import numba
 from numba.core.caching import CompileResultCacheImpl, FunctionCache, InTreeCacheLocator
+from numba.core.registry import cpu_target
 from numba.core.serialize import dumps
 
 from roughmdr.numerics.fingerprint import COMPILED, fingerprint
@@ -33,7 +34,7 @@ USED: dict[str, Path | None] = {}
 
 
 class Folders(NamedTuple):
-    """Where compiled code is looked for, in this order, and where new code is put, None where nothing can be written."""
+    """Where compiled code is looked for, in order, and where new code is put, None where nothing can be written."""
 
     read: tuple[Path, ...]
     written: Path | None
@@ -85,14 +86,33 @@ def _remove_unused(base: Path) -> None:
                 shutil.rmtree(folder)
 
 
+def processor() -> str:
+    """Return the processor that numba compiles for; that of ``NUMBA_CPU_NAME``, where it is set."""
+    return str(cast(Any, cpu_target).target_context.codegen().magic_tuple()[1])
+
+
+def compiles() -> bool:
+    """Return whether functions are compiled: not where ``NUMBA_DISABLE_JIT`` is set."""
+    return not cast(Any, numba.config).DISABLE_JIT
+
+
 def keep_on_disk(function: Any) -> None:
     """Let a function compiled by numba be looked for on disk before it is compiled, and put there after."""
     if folders().read:
         function._cache = _Cache(function.py_func)
 
 
+@cache
+def _content(file: str) -> str:
+    """Return a hash of a file."""
+    return hashlib.sha256(Path(file).read_bytes()).hexdigest()
+
+
 class _Locator(InTreeCacheLocator):
     """Tells numba the content of the source file of a function, and nothing of where it lies."""
+
+    def get_source_stamp(self) -> str:
+        return _content(self._py_file)
 
     def get_cache_path(self) -> str:
         return str(folders().written or "")
@@ -102,7 +122,7 @@ class _Locator(InTreeCacheLocator):
 
 
 class _Implementation(CompileResultCacheImpl):
-    _locator_classes = [_Locator]
+    _locator_classes = [_Locator]  # noqa: RUF012 - as in numba
 
 
 class _Cache(FunctionCache):
@@ -111,8 +131,8 @@ class _Cache(FunctionCache):
     _impl_class = _Implementation
 
     def __init__(self, function: Any) -> None:
-        super().__init__(function)
-        self._cache_file = _Files(f"{function.__module__}.{function.__qualname__}", self._impl)
+        cast(Any, super()).__init__(function)
+        cast(Any, self)._cache_file = _Files(f"{function.__module__}.{function.__qualname__}", self._impl)
 
 
 class _Files:
@@ -133,7 +153,7 @@ class _Files:
         for folder in folders().read:
             with suppress(OSError, EOFError, pickle.UnpicklingError):
                 kept = pickle.loads((folder / file).read_bytes())
-                USED[file] = folder
+                USED.setdefault(file, folder)
                 return kept
         USED[file] = None
         return None
@@ -145,7 +165,7 @@ class _Files:
         path = folder / self._file(key)
         temporary = path.with_suffix(f".{os.getpid()}.{time.monotonic_ns()}")
         try:
-            temporary.write_bytes(dumps(kept))
+            temporary.write_bytes(cast(Any, dumps)(kept))
             os.replace(temporary, path)
         except OSError:
             with suppress(OSError):
