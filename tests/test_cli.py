@@ -66,7 +66,7 @@ def test_a_quiet_run_compiles_in_silence(small: Path, monkeypatch: pytest.Monkey
     monkeypatch.setenv("XDG_CACHE_HOME", str(small / "cache"))
     done = in_a_process("run", "small.toml", "-o", "out.nc", "--quiet", "--set", "adhesion.work=0", cwd=small)
     assert (done.returncode, done.stdout, done.stderr) == (0, "", "")
-    assert list((small / "cache").rglob("*.nbi"))
+    assert list((small / "cache").rglob("*.nbc"))
 
 
 @pytest.mark.parametrize(

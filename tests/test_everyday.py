@@ -200,4 +200,4 @@ def test_it_works_where_the_home_folder_cannot_be_written(folder: Path, elsewher
     assert done.returncode == 0, done.stderr
     assert (folder / "out.nc").exists()
     assert (folder / "cache").exists() == elsewhere
-    assert not elsewhere or list((folder / "cache").rglob("*.nbi"))
+    assert not elsewhere or list((folder / "cache").rglob("*.nbc"))

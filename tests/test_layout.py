@@ -76,7 +76,7 @@ def test_a_module_imports_only_from_its_own_line_or_above(path: Path) -> None:
     [
         ("dask", ["runner/"]),
         ("distributed", ["runner/"]),
-        ("numba", ["numerics/jit.py", "numerics/compiling.py"]),
+        ("numba", ["numerics/jit.py", "numerics/cache.py", "numerics/compiling.py"]),
         ("matplotlib", ["pictures/"]),
         ("click", ["cli/", "report/terminal.py"]),
         ("rich", ["runner/progress.py"]),
@@ -131,6 +131,7 @@ _ALWAYS_HEAVY = {"dask", "matplotlib", "xarray", "pandas", "scipy", "numba"}
         (["--version"], set()),
         (["new", "new.toml"], {"scipy"}),  # whose distributions the schema beside it lists
         large(["schema"], {"scipy"}),
+        large(["warm", "small.toml", "--workers", "1"], {"scipy", "numba"}),
         (["cite", "out.nc"], set()),
         (["info", "out.nc"], set()),
         large(["info", "out.nc", "--json"], set()),
