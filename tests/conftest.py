@@ -18,7 +18,7 @@ from roughmdr.shapes import SHAPES, Shape
 
 COMPILED = {"paraboloid", "sphere", "truncated_cone", "tabulated"}
 """Shapes whose tests are no long forms where functions are compiled; those of the others run uncompiled instead."""
-COMPILING = ("aggregate", "asperity", "batch", "expected", "interaction", "kernels", "shapes")
+COMPILING = ("aggregate", "asperity", "batch", "expected", "interaction", "kernels", "shapes", "springs")
 """Folders whose tests compile functions of the shapes that they name."""
 _PARTS = re.compile("|".join(sorted(SHAPES, key=len, reverse=True)))
 
