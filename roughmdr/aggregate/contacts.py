@@ -15,6 +15,7 @@ from roughmdr.aggregate.block import (
     Block,
     law,
 )
+from roughmdr.kernels.profile.layout import BRANCHED
 from roughmdr.loading.staircase import Staircase
 from roughmdr.numerics.arguments import Floats
 
@@ -31,13 +32,36 @@ def update_contact(count: int, block: Block, memory: Staircase, begin: int, end:
             contacts[IN_CONTACT, i] = 1.0 if held else contacts[IN_CONTACT, i]
 
 
+def follow_pairs(count: int, block: Block, touched: float, memory: Staircase, begin: int, end: int) -> None:
+    """Find which of the first ``count`` asperities are in contact, where there is one branch."""
+    law.update_contact(count, block, memory, begin, end)
+
+
+def follow_branches(count: int, block: Block, touched: float, memory: Staircase, begin: int, end: int) -> None:
+    """Find the branches of the first ``count`` asperities from those at the step before; contact begins at heights of
+    ``touched``.
+    """
+    z, params, contacts = block.z, block.params, block.contacts
+    for i in range(count):
+        contacts[IN_CONTACT, i] = law.branch(
+            contacts[TERM, i], contacts[IN_CONTACT, i], z[i] >= touched, law.params_of(params, i)
+        )
+
+
+def follow_either(count: int, block: Block, touched: float, memory: Staircase, begin: int, end: int) -> None:
+    """Do as ``follow_branches`` or as ``follow_pairs``, as the rows tell."""
+    if block.params[0, BRANCHED] > 0.0:
+        law.follow_branches(count, block, touched, memory, begin, end)
+    else:
+        law.update_contact(count, block, memory, begin, end)
+
+
 def evaluate(count: int, block: Block) -> None:
     """Find a, P and k of the first ``count`` contacts from their states."""
-    contacts, params = block.contacts, block.params
-    for i in range(count):
-        contacts[RADIUS, i], contacts[FORCE, i], contacts[STIFFNESS, i] = law.radius_force_stiffness(
-            contacts[STATE, i], law.params_of(params, i)
-        )
+    contacts = block.contacts
+    law.evaluate_all(
+        count, contacts[STATE], contacts[RADIUS], contacts[FORCE], contacts[STIFFNESS], block.params
+    )
 
 
 def solve_closed(
@@ -94,8 +118,7 @@ def solve_iterative(
     params, contacts = block.params, block.contacts
     state, error, in_contact, x = contacts[STATE], contacts[STATE_ERROR], contacts[IN_CONTACT], contacts[TERM]
     law.guess_states(count, block, h, adhesion_range, memory, begin, end)
-    for i in range(count):
-        state[i], error[i], _ = law.approach(state[i], x[i], law.params_of(params, i))
+    law.approach_all(count, x, state, error, params)
     unknown = 0
     for i in range(count):
         branch = in_contact[i] if law.adhesive else 1.0
@@ -117,8 +140,7 @@ def solve_near(
     state, a, force, stiffness = contacts[STATE], contacts[RADIUS], contacts[FORCE], contacts[STIFFNESS]
     error, x = contacts[STATE_ERROR], contacts[TERM]
     law.guess_states(count, block, h, adhesion_range, memory, begin, end)
-    for i in range(count):
-        state[i], a[i], force[i], stiffness[i], error[i] = law.contact_near(state[i], x[i], law.params_of(params, i))
+    law.near_all(count, x, state, a, force, stiffness, error, params)
     unknown = 0
     for i in range(count):
         unknown += law.converged(error[i], 1.0, law.params_of(params, i)) < 1
@@ -152,19 +174,12 @@ def place(count: int, block: Block, h: float, adhesion_range: float, memory: Sta
     Those out of contact have the x of first touch. With several branches, IN_CONTACT holds the number of the
     branch at the step before, and then the new one.
     """
-    z, params = block.z, block.params
-    scales, contacts = block.scales, block.contacts
+    z, scales, contacts = block.z, block.scales, block.contacts
     lift = 1.0 if law.adhesive else 0.0
     for i in range(count):
         contacts[TERM, i] = max(((z[i] - h) + lift * scales[DEPTH_SCALE, i]) * scales[PER_DEPTH, i], 0.0)
-    if law.branched:
-        for i in range(count):
-            contacts[IN_CONTACT, i] = law.branch(
-                contacts[TERM, i], contacts[IN_CONTACT, i], z[i] >= h - adhesion_range, law.params_of(params, i)
-            )
-    elif law.adhesive:
-        law.update_contact(count, block, memory, begin, end)
     if law.adhesive:
+        law.follow(count, block, h - adhesion_range, memory, begin, end)
         for i in range(count):
             contacts[TERM, i] = contacts[TERM, i] if contacts[IN_CONTACT, i] > 0.0 else 1.0
 

@@ -29,6 +29,8 @@ from roughmdr.numerics.rebind import rebuilt
 
 let_collector_rest()
 _config: Any = numba.config
+UNCOMPILED = bool(_config.DISABLE_JIT)
+"""Whether functions stay as they are, by NUMBA_DISABLE_JIT."""
 _Made = TypeVar("_Made")
 _Function = TypeVar("_Function", bound=Callable[..., Any])
 
@@ -119,6 +121,7 @@ def _let_compiled_code_call(whole: Any, decorator: Callable[..., Any]) -> None:
 
     whole.get_call_template = call_template
     whole.get_overload = lambda signature: bare().get_overload(signature)
+    whole.bare = bare
 
 
 def _renamed(function: FunctionType, suffix: str) -> FunctionType:
@@ -188,6 +191,18 @@ def specialise(
     copy = FunctionType(code, {**plain.__globals__, "law": law}, loop.__name__)
     copy.__module__, copy.__qualname__ = loop.__module__, f"{loop.__qualname__}_{law.__name__}"
     return njit(copy, inline=inline, small=small)
+
+
+def address_of(function: Callable[..., Any], taken: tuple[Any, ...], returned: Any) -> int:
+    """Return the address of a function of ``njit`` for code that numba compiles; TypeError where it returns another
+    type.
+    """
+    bare = cast(Any, function).bare()
+    bare.compile(taken)
+    compiled = bare.overloads[taken]
+    if unliteral(compiled.signature.return_type) != returned:
+        raise TypeError(f"{bare.py_func.__qualname__} returns {compiled.signature.return_type}, not {returned}")
+    return int(compiled.library.get_pointer_to_function(compiled.fndesc.llvm_func_name))
 
 
 class _Addressed:

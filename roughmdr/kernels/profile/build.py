@@ -1,4 +1,10 @@
-"""The kernels of asperities with any ``Profile``, put together; and the rows that they read, filled once for each."""
+"""The kernels of asperities with any ``Profile``, put together.
+
+What is called once an asperity, or where steps do not lead to a state, is compiled once for all shapes and calls their
+profiles by address, and so are the loops of the sum, which call a function of the shape once a block. Under adhesion
+with a range, where one evaluation costs as much as such a call, and for profiles that are tables all is compiled for
+each shape.
+"""
 
 import inspect
 import math
@@ -6,110 +12,19 @@ from collections.abc import Callable
 from types import ModuleType
 from typing import Any
 
-import numpy as np
-
+from roughmdr.kernels import blocks
 from roughmdr.kernels.dugdale import both_edges, edges_table, paraboloid, zone, zone_edge
 from roughmdr.kernels.dugdale import branches as dugdale_branches
 from roughmdr.kernels.dugdale import equilibrium as dugdale_equilibrium
-from roughmdr.kernels.interface import Columns, Material
-from roughmdr.kernels.profile import branches, elastic, equilibrium, folds, initial_guess, newton, one_number
-from roughmdr.kernels.profile.interface import ProfileKernels, law
-from roughmdr.kernels.profile.layout import CONTROL, COUNT, DEPTH, NUMBER, RANGE, STRENGTH, TENSION, first_node
+from roughmdr.kernels.profile import branches, elastic, equilibrium, folds, initial_guess, newton, one_number, rows
+from roughmdr.kernels.profile.interface import ProfileKernels
+from roughmdr.kernels.profile.layout import FUNCTIONS, first_node
 from roughmdr.numerics.arguments import Floats
-from roughmdr.numerics.double_double import Pair
-from roughmdr.numerics.jit import compiled, once, specialise
+from roughmdr.numerics.by_address import Table, through_row
+from roughmdr.numerics.jit import UNCOMPILED, compiled, once, specialise
 from roughmdr.shapes import Cone, Paraboloid, Shape, Sphere, TabledShape
 from roughmdr.shapes.power_profiles import profile_of
 from roughmdr.shapes.profile import Profile
-
-
-def fill_params(material: Material, width: float, rise: float, control: float, params: Floats) -> None:
-    """Fill the row of one asperity, in which the parameters of its shape stand already."""
-    modulus, work, strength = material
-    params[TENSION] = math.sqrt(2.0 * math.pi * work) / math.sqrt(modulus) * math.sqrt(width) / rise
-    params[CONTROL], params[NUMBER] = control, params[0]
-    params[STRENGTH], params[RANGE] = 2.0 * strength / modulus * width / rise, work / strength / rise
-    law.precompute(params)
-    law.find_branches(params)
-
-
-def repeated(columns: Columns, i: int) -> bool:
-    """Return whether asperity i > 0 is like the one before."""
-    width, rise, params = columns
-    return bool(width[i] == width[i - 1] and rise[i] == rise[i - 1] and params[i] == params[i - 1])
-
-
-def prepare(material: Material, columns: Columns, start: int, stop: int, control: float, deepest: float) -> Floats:
-    """Return a row for each of the asperities from start to stop; the branches of those like the one before are not
-    sought again.
-    """
-    rows, last = np.zeros((stop - start, 2 - law.first_node)), 0
-    for i in range(stop - start):
-        if i > 0 and law.repeated(columns, start + i):
-            for j in range(rows.shape[1]):
-                rows[i, j] = rows[i - 1, j]
-            continue
-        rows[i, 0] = columns.params[start + i]
-        law.fill_params(material, columns.width[start + i], columns.rise[start + i], control, rows[i])
-        last = max(last, law.node_beyond(deepest / columns.rise[start + i], rows[i]))
-    law.fill_nodes(last, rows)
-    return rows
-
-
-def prepare_tabled(
-    material: Material, columns: Columns, start: int, stop: int, control: float, deepest: float
-) -> Floats:
-    """Return as ``prepare`` where the params of an asperity are a row themselves."""
-    size = columns.params.shape[1]
-    rows, last = np.zeros((stop - start, size - law.first_node)), 0
-    for i in range(stop - start):
-        rows[i, :size] = columns.params[start + i]
-        law.fill_params(material, columns.width[start + i], columns.rise[start + i], control, rows[i])
-        last = max(last, law.node_beyond(deepest / columns.rise[start + i], rows[i]))
-    law.fill_nodes(last, rows)
-    return rows
-
-
-def prepare_shared(
-    material: Material, columns: Columns, start: int, stop: int, control: float, deepest: float
-) -> Floats:
-    """Return the one row of asperities that are all alike."""
-    size = columns.params.shape[1]
-    rows = np.zeros((1, size - law.first_node))
-    rows[0, :size] = columns.params[0]
-    law.fill_params(material, columns.width[0], columns.rise[0], control, rows[0])
-    law.fill_nodes(law.node_beyond(deepest / columns.rise[0], rows[0]), rows)
-    return rows
-
-
-def params_of(rows: Floats, i: int) -> Floats:
-    """Return the row of one asperity."""
-    return rows[i]
-
-
-def shared_params(rows: Floats, i: int) -> Floats:
-    """Return the row of all asperities."""
-    return rows[0]
-
-
-def scales(
-    effective_modulus: float, work: float, width: float, rise: float, params: Floats
-) -> tuple[Pair, float, float, float]:
-    """Return the natural depth [m], radius [m], force [N] and stiffness [N/m]; depth 0 where there is no contact."""
-    depth = rise * params[DEPTH] if params[COUNT] > 0.0 else 0.0
-    return (depth, 0.0), width, 2.0 * effective_modulus * width * rise, 2.0 * effective_modulus * width
-
-
-def force_scales(
-    effective_modulus: float, work: float, width: float, rise: float, params: Floats
-) -> tuple[Pair, float]:
-    """Return the pull-off force [N], DEPTH of a row under dead load in SI, and the width [m]."""
-    return ((2.0 * effective_modulus * width * rise * params[DEPTH] if params[COUNT] > 0.0 else 0.0), 0.0), width
-
-
-def state_of_radius(radius: float, width: float, params: Floats) -> float:
-    """Return t at a contact radius [m]."""
-    return law.t_of_radius(radius, width, params)
 
 
 def _no_t_of_q(q: float, params: Floats) -> float:
@@ -137,6 +52,7 @@ _VECTOR_CODE: set[Callable[..., Any]] = {
     initial_guess.initial_guess,
     initial_guess.x_of_y,
     initial_guess.extrapolate_node,
+    initial_guess.trusted,
     newton.newton_step,
     newton.one_step,
     newton.two_steps,
@@ -171,6 +87,84 @@ def _functions(*modules: ModuleType) -> dict[str, Callable[..., Any]]:
     }
 
 
+_ROW, _ROWS, _EACH = "float64[::1]", "float64[:, ::1]", "float64[::1]"
+_BY_ADDRESS = {
+    "mdr_profile": f"UniTuple(float64, 4)(float64, {_ROW})",
+    "reduced_load": f"float64(float64, {_ROW})",
+    "softening_count": f"int64({_ROW})",
+    "softening_interval": f"UniTuple(float64, 2)(int64, {_ROW})",
+    "kink": f"boolean(float64, float64, {_ROW})",
+    "note_shape": f"void({_ROW})",
+    "step_nodes": f"int64(int64, int64, {_ROWS}, {_ROWS})",
+    "one_step": f"UniTuple(float64, 3)(float64, float64, {_ROW})",
+    "radius_force_stiffness": f"UniTuple(float64, 3)(float64, {_ROW})",
+    "approach_all": f"void(int64, {_EACH}, {_EACH}, {_EACH}, {_ROWS})",
+    "evaluate_all": f"void(int64, {_EACH}, {_EACH}, {_EACH}, {_EACH}, {_ROWS})",
+    "near_all": f"void(int64, {_EACH}, {_EACH}, {_EACH}, {_EACH}, {_EACH}, {_EACH}, {_ROWS})",
+    "energy": f"float64(float64, {_ROW})",
+}
+"""The functions of a shape that kernels of any shape call, and their types."""
+_IN_SUMS = {"one_step", "radius_force_stiffness", "approach_all", "evaluate_all"}
+_IN_SUMS_OF_SIMILAR = {"one_step", "radius_force_stiffness", "near_all"}
+_OF_SHAPE = {
+    *_functions(equilibrium, elastic),
+    *("newton_step", "one_step", "two_steps", "approach", "note_shape", "step_nodes", "state_of_radius"),
+} - {"prepare", "y_of_x", "x_of_y", "relative_errors", "adhesion_terms"}
+"""Parts that are compiled for each shape all the same."""
+
+
+def _constants(shared: bool, similar: bool, octaves: int, node_size: int) -> dict[str, Any]:
+    """Return what kernels of all shapes have: how contacts are found, and the layout of rows."""
+    split = _SPLIT if shared else 0
+    return {
+        "iterative": True,
+        "found_together": True,
+        "shared": shared,
+        "found_near": similar,
+        "octaves": octaves,
+        "split": split,
+        "first_node": first_node(octaves, split, node_size),
+        "node_size": node_size,
+    }
+
+
+def _elastic_or_jkr(similar: bool) -> dict[str, Callable[..., Any]]:
+    """Return the parts without adhesion, and of JKR; ``similar`` for asperities that share one row."""
+    own = (elastic,) if similar else ()
+    return _functions(folds, newton, initial_guess, branches, rows, equilibrium, *own)
+
+
+@once
+def _of_any(similar: bool) -> ProfileKernels:
+    """Return the kernels that call the functions of a shape by address; ``similar`` as in ``build``."""
+    whole = ProfileKernels("any_similar" if similar else "any")
+    called = {name: through_row(i, FUNCTIONS, types) for i, (name, types) in enumerate(_BY_ADDRESS.items())}
+    vars(whole).update(_constants(similar, similar, _OCTAVES_OF_SIMILAR if similar else _OCTAVES, 2))
+    for name, part in _elastic_or_jkr(similar).items():
+        inline = name in ("params_of", "shared_params")
+        vars(whole)[name] = specialise(part, whole, inline=inline, small=part in _VECTOR_CODE)
+    vars(whole).update(called)
+    if similar:
+        whole.params_of = whole.shared_params
+    return whole
+
+
+def _functions_of(whole: ProfileKernels, inlined: ProfileKernels, similar: bool) -> Callable[[bool, bool], float]:
+    """Return ``Kernels.functions`` for kernels of a shape, and for those with the functions that become vector code."""
+    in_sums = _IN_SUMS_OF_SIMILAR if similar else _IN_SUMS
+    loops = {name: part for name, part in _functions(blocks).items() if name in in_sums}
+
+    def function(name: str) -> Callable[..., Any]:
+        return specialise(loops[name], inlined) if name in loops else getattr(whole, name)
+
+    table, always = Table(function, _BY_ADDRESS), set(_BY_ADDRESS) - _IN_SUMS - _IN_SUMS_OF_SIMILAR - {"energy"}
+
+    def address(summed: bool, energetic: bool) -> float:
+        return table.address(always | (in_sums if summed else set()) | ({"energy"} if energetic else set()))
+
+    return address
+
+
 @once
 def build(shape: type[Shape], *, cohesive: bool, similar: bool = False) -> ProfileKernels:
     """Return the kernels of a shape that is not a flat punch; ``cohesive`` where adhesion has a range; ``similar`` for
@@ -178,7 +172,7 @@ def build(shape: type[Shape], *, cohesive: bool, similar: bool = False) -> Profi
     """
     profile, tabled = profile_of(shape), issubclass(shape, TabledShape)
     shared = shape.shared or similar
-    parts = _functions(folds, newton, initial_guess, branches, inspect.getmodule(build) or ModuleType(""), equilibrium)
+    parts = _elastic_or_jkr(similar)
     if cohesive:
         last = (paraboloid,) if shape is Paraboloid else (both_edges, edges_table)
         parts["state_by_search"] = parts["state_on_branch"]
@@ -186,26 +180,17 @@ def build(shape: type[Shape], *, cohesive: bool, similar: bool = False) -> Profi
         closed = parts.pop("gap_integrals_closed")
         if profile.zone_integrals is not None:
             parts["gap_integrals"] = closed
-    if similar:
-        parts |= _functions(elastic)
     plain: dict[str, Any] = profile._asdict()
     one_by_one = cohesive and shape is not Paraboloid
     octaves, node_size = (_OCTAVES_OF_EDGES, 4) if one_by_one else (_OCTAVES_OF_SIMILAR if similar else _OCTAVES, 2)
-    split = _SPLIT if shared else 0
     constants = {
+        **_constants(shared, similar, octaves, node_size),
         **{name: plain.pop(name) for name in ("corner", "flat", "end")},
         "has_t_of_q": profile.t_of_q is not None,
         "terms_cancel": profile.term_sizes is not None,
         "stride": 2.0 if shape in _ONE_BRANCH else math.sqrt(2.0),
-        "iterative": True,
-        "found_together": True,
-        "octaves": octaves,
-        "shared": shared,
-        "found_near": similar,
+        "softens": shape.branched(),
         "of_pieces": tabled or shape.shared,
-        "split": split,
-        "first_node": first_node(octaves, split, node_size),
-        "node_size": node_size,
         "one_by_one": one_by_one,
         "adhesive": cohesive,
         "branched": cohesive,
@@ -237,7 +222,13 @@ def build(shape: type[Shape], *, cohesive: bool, similar: bool = False) -> Profi
         vector["kink_between"] = compiled(plain["kink_between"], small=True)
     inlined = whole.copy()
     small = _VECTOR_CODE | (_VECTOR_CODE_OF_PARABOLOID if shape is Paraboloid else _INLINE_OF_EDGES)
+    by_address = not (cohesive or tabled or shape.shared or UNCOMPILED)
+    if by_address:
+        whole.of_any, whole.functions = _of_any(similar), _functions_of(whole, inlined, similar)
     for name, part in parts.items():
+        if by_address and name not in _OF_SHAPE:
+            vars(whole)[name] = getattr(whole.of_any, name)
+            continue
         kernels = inlined if part in small else whole
         inline = name in ("params_of", "shared_params")
         vars(whole)[name] = specialise(part, kernels, inline=inline, small=part in small)

@@ -10,7 +10,7 @@ import math
 import numpy as np
 
 from roughmdr.kernels.profile.interface import law
-from roughmdr.kernels.profile.layout import CONTROL, COUNT, DEPTH, LAST, LAST_X, TENSION
+from roughmdr.kernels.profile.layout import CONTROL, COUNT, DEPTH, FLAT, LAST, LAST_X, TENSION
 from roughmdr.numerics.arguments import Floats
 from roughmdr.numerics.jit import compiled
 from roughmdr.numerics.vector_math import binade_cell
@@ -108,7 +108,7 @@ def fill_first_node(params: Floats) -> float:
         law.fill_node(0, 1.0, params)
         return float(law.extrapolate_node(1, math.log(y), params))
     params[law.first_node] = foot
-    slope = law.control_at(foot, params)[1] if foot > 0.0 or law.flat else math.inf
+    slope = law.control_at(foot, params)[1] if foot > 0.0 or params[FLAT] > 0.0 else math.inf
     if foot == 0.0 or slope > _CORNER * params[DEPTH] / foot:
         params[law.first_node + 1] = 0.0
         way = (law.x_of_y(y, params)[0] - params[LAST_X]) * params[DEPTH]
@@ -139,17 +139,37 @@ def node_beyond(indentation: float, params: Floats) -> int:
 
 
 def fill_nodes(last: int, rows: Floats) -> None:
-    """Fill in the nodes up to ``last`` of all rows, each for all at a time, so that no row waits for another."""
-    count = rows.shape[0]
-    t, error, per = np.empty(count), np.empty(count), np.empty(count)
-    for i in range(count):
-        t[i] = law.fill_first_node(rows[i]) if rows[i, COUNT] > 0.0 else 0.0
-    for node in range(1, last + 1):
-        y = law.y_of_node(node)
-        if node > 1:
-            step = law.step_to(node, rows[0])
+    """Fill in the nodes up to ``last`` of all rows."""
+    found, node = np.empty((3, rows.shape[0])), 0
+    for i in range(rows.shape[0]):
+        found[0, i] = law.fill_first_node(rows[i]) if rows[i, COUNT] > 0.0 else 0.0
+    while node < last:
+        node = law.step_nodes(node + 1, last, found, rows)
+        for i in range(rows.shape[0]):
+            if not law.trusted(found[1, i], rows[i]) and rows[i, COUNT] > 0.0:
+                law.fill_node(node, law.y_of_node(node), rows[i])
+
+
+def trusted(error: float, params: Floats) -> bool:
+    """Whether steps to a node have led to its state, with a bound of the error as from ``one_step``, which is for fixed
+    grips.
+    """
+    return bool((error < _MAX_ERROR) & (params[CONTROL] == 0.0))
+
+
+def step_nodes(node: int, last: int, found: Floats, rows: Floats) -> int:
+    """Fill in nodes from ``node`` on by steps, each for all rows at a time, so that no row waits for another; return
+    the first that is not to be trusted in every row, else the last.
+
+    ``found`` has the t of each row that is known about node 1, and room for its errors and slopes.
+    """
+    count, t, error, per = rows.shape[0], found[0], found[1], found[2]
+    for at in range(node, last + 1):
+        y = law.y_of_node(at)
+        if at > 1:
+            step = law.step_to(at, rows[0])
             for i in range(count):
-                t[i] = law.extrapolate_node(node, step, rows[i])
+                t[i] = law.extrapolate_node(at, step, rows[i])
         for _ in range(_STEPS):
             for i in range(count):
                 t[i], error[i], per[i] = law.one_step(t[i], law.x_of_y(y, rows[i])[0], rows[i])
@@ -159,10 +179,11 @@ def fill_nodes(last: int, rows: Floats) -> None:
             if unsure == 0:
                 break
         for i in range(count):
-            rows[i, law.first_node + 2 * node] = t[i]
-            rows[i, law.first_node + 2 * node + 1] = law.x_of_y(y, rows[i])[1] * per[i] / law.y_over_part(node)
+            rows[i, law.first_node + 2 * at] = t[i]
+            rows[i, law.first_node + 2 * at + 1] = law.x_of_y(y, rows[i])[1] * per[i] / law.y_over_part(at)
+        unsure = 0
         for i in range(count):
-            # ``one_step`` is for fixed grips.
-            trusted = (error[i] < _MAX_ERROR) & (rows[i, CONTROL] == 0.0)
-            if not trusted and rows[i, COUNT] > 0.0:
-                law.fill_node(node, y, rows[i])
+            unsure += law.trusted(error[i], rows[i]) < 1
+        if unsure > 0:
+            return at
+    return last

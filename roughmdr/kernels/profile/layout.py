@@ -22,8 +22,9 @@ NUMBER = -13  # what tells shapes of one kind apart, besides width and rise: the
 NEAR = (
     -14
 )  # relative to t: nearer than this to a foot the slope is integrated, as the difference of values is less precise
-FOOT, TOP = NEAR - MAX_BRANCHES, NEAR - 2 * MAX_BRANCHES  # t of the first
-FOOT_X, TOP_X = NEAR - 3 * MAX_BRANCHES, NEAR - 4 * MAX_BRANCHES  # x of the first
+FUNCTIONS = -15  # the address of the functions of the shape, for kernels that are compiled for any; else 0
+ROUNDINGS, CORNER, FLAT, BRANCHED = -16, -17, -18, -19  # what ``note_shape`` knows of the shape: the last three are 0 or 1
+FOOT, TOP, FOOT_X, TOP_X = (BRANCHED - rows * MAX_BRANCHES for rows in range(1, 5))  # t, and x, of the first
 
 
 def first_node(octaves: int, split: int, numbers: int) -> int:
