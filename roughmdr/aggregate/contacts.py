@@ -2,19 +2,8 @@
 
 from typing import Any
 
-from roughmdr.aggregate.block import (
-    DEPTH_SCALE,
-    FORCE,
-    IN_CONTACT,
-    PER_DEPTH,
-    RADIUS,
-    STATE,
-    STATE_ERROR,
-    STIFFNESS,
-    TERM,
-    Block,
-    law,
-)
+from roughmdr.aggregate.block import DEPTH_SCALE, PER_DEPTH, Block, law
+from roughmdr.kernels.blocks import FORCE, IN_CONTACT, RADIUS, STATE, STATE_ERROR, STIFFNESS, TERM
 from roughmdr.kernels.profile.layout import BRANCHED
 from roughmdr.loading.staircase import Staircase
 from roughmdr.numerics.arguments import Floats
@@ -56,14 +45,6 @@ def follow_either(count: int, block: Block, touched: float, memory: Staircase, b
         law.update_contact(count, block, memory, begin, end)
 
 
-def evaluate(count: int, block: Block) -> None:
-    """Find a, P and k of the first ``count`` contacts from their states."""
-    contacts = block.contacts
-    law.evaluate_all(
-        count, contacts[STATE], contacts[RADIUS], contacts[FORCE], contacts[STIFFNESS], block.params
-    )
-
-
 def solve_closed(
     count: int, block: Block, h: float, adhesion_range: float, memory: Staircase, begin: int, end: int
 ) -> None:
@@ -82,7 +63,7 @@ def solve_closed(
         for i in range(count):
             contacts[STATE, i] = law.state((z[i] - h) * scales[PER_DEPTH, i], law.params_of(params, i))
     if law.found_together:
-        law.evaluate(count, block)
+        law.evaluate_all(count, block.contacts, block.params)
 
 
 def solve_refined(
@@ -95,7 +76,7 @@ def solve_refined(
     for _ in range(law.refinements):
         for i in range(count):
             state[i] = law.refined(state[i], x[i], law.params_of(params, i))
-    law.evaluate(count, block)
+    law.evaluate_all(count, block.contacts, block.params)
 
 
 def guess_states(
@@ -114,11 +95,11 @@ def guess_states(
 def solve_iterative(
     count: int, block: Block, h: float, adhesion_range: float, memory: Staircase, begin: int, end: int
 ) -> None:
-    """Do as ``solve_closed`` by a fixed number of steps for all contacts, as vector code, and a search for some."""
+    """Do as ``solve_closed`` by what is the same for all contacts, as vector code, and a search for some."""
     params, contacts = block.params, block.contacts
     state, error, in_contact, x = contacts[STATE], contacts[STATE_ERROR], contacts[IN_CONTACT], contacts[TERM]
     law.guess_states(count, block, h, adhesion_range, memory, begin, end)
-    law.approach_all(count, x, state, error, params)
+    law.find_all(count, contacts, params)
     unknown = 0
     for i in range(count):
         branch = in_contact[i] if law.adhesive else 1.0
@@ -127,30 +108,11 @@ def solve_iterative(
         for i in range(count):
             branch, own = in_contact[i] if law.adhesive else 1.0, law.params_of(params, i)
             if branch > 0.0 and not law.converged(error[i], branch, own):
-                t, left, _ = law.one_step(state[i], x[i], own)
+                t, left, _ = law.one_step(state[i], x[i], own)  # from a state that may be below 0: then none converges
                 state[i] = t if law.converged(left, branch, own) else law.state_on_branch(x[i], branch, own)
-    law.evaluate(count, block)
-
-
-def solve_near(
-    count: int, block: Block, h: float, adhesion_range: float, memory: Staircase, begin: int, end: int
-) -> None:
-    """Do as ``solve_closed`` from the values at good guesses, as vector code, and by a search for some."""
-    params, contacts = block.params, block.contacts
-    state, a, force, stiffness = contacts[STATE], contacts[RADIUS], contacts[FORCE], contacts[STIFFNESS]
-    error, x = contacts[STATE_ERROR], contacts[TERM]
-    law.guess_states(count, block, h, adhesion_range, memory, begin, end)
-    law.near_all(count, x, state, a, force, stiffness, error, params)
-    unknown = 0
-    for i in range(count):
-        unknown += law.converged(error[i], 1.0, law.params_of(params, i)) < 1
-    if unknown > 0:
-        for i in range(count):
-            own = law.params_of(params, i)
-            if not law.converged(error[i], 1.0, own):  # such a state may be below 0: then no step converges
-                t, left, _ = law.one_step(state[i], x[i], own)
-                state[i] = t if law.converged(left, 1.0, own) else law.state_on_branch(x[i], 1.0, own)
-                a[i], force[i], stiffness[i] = law.radius_force_stiffness(state[i], own)
+                contacts[RADIUS, i], contacts[FORCE, i], contacts[STIFFNESS, i] = law.radius_force_stiffness(
+                    state[i], own
+                )
 
 
 def solve_each(

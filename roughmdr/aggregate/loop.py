@@ -12,11 +12,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from roughmdr.aggregate.block import (
-    BEFORE,
-    CONTACT_ROWS,
     DEPTH_SCALE,
     FORCE_SCALE,
-    IN_CONTACT,
     RADIUS_SCALE,
     SCALES,
     Block,
@@ -26,7 +23,6 @@ from roughmdr.aggregate.block import (
     prepare_of,
 )
 from roughmdr.aggregate.contacts import (
-    evaluate,
     follow_branches,
     follow_either,
     follow_pairs,
@@ -40,7 +36,6 @@ from roughmdr.aggregate.contacts import (
     solve_closed,
     solve_each,
     solve_iterative,
-    solve_near,
     solve_refined,
     stiffness_of_state,
     update_contact,
@@ -61,7 +56,7 @@ from roughmdr.aggregate.totals import (
 )
 from roughmdr.errors import OutOfRange
 from roughmdr.kernels.adhesion import Adhesion
-from roughmdr.kernels.blocks import approach_all, evaluate_all, near_all
+from roughmdr.kernels.blocks import BEFORE, CONTACT_ROWS, IN_CONTACT, evaluate_all, find_by_steps, find_near
 from roughmdr.kernels.interface import Columns, Kernels, Material
 from roughmdr.loading.staircase import Staircase, no_memory
 from roughmdr.numerics.arguments import Floats
@@ -186,15 +181,14 @@ def compiled_sum(kernels: Kernels, *, energetic: bool) -> SumKernels:
     name, together = kernels.name + ("_energetic" if energetic else ""), kernels.found_together
     whole = SumKernels(name)
     solve = solve_iterative if kernels.iterative else solve_refined if kernels.refinements > 0 else solve_closed
+    solve = solve_each if kernels.one_by_one else solve
     follow = follow_either if kernels.rows_tell else follow_branches if kernels.branched else follow_pairs
-    solve = solve_each if kernels.one_by_one else solve_near if kernels.found_near else solve
     vars(whole).update({"term_sizes": no_terms, **vars(kernels), "__name__": name})
     whole.energetic = energetic
     parts: dict[str, Callable[..., object]] = {
         "natural_scales": natural_scales,
         "lowest_in_contact": lowest_in_contact,
         "update_contact": update_contact,
-        "evaluate": evaluate,
         "place": place,
         "follow": follow,
         "follow_branches": follow_branches,
@@ -210,8 +204,8 @@ def compiled_sum(kernels: Kernels, *, energetic: bool) -> SumKernels:
         "jumps_between_branches": jumps_between_branches,
         "add_totals": add_totals,
     }
-    of_shape = {part.__name__: part for part in (approach_all, evaluate_all, near_all)}
-    parts |= {name: part for name, part in of_shape.items() if name not in vars(kernels)}
+    if kernels.of_any is None and "find_all" not in vars(kernels):
+        parts |= {"find_all": find_near if kernels.found_near else find_by_steps, "evaluate_all": evaluate_all}
     for name, part in parts.items():
         of_one = name in _OF_ONE_CONTACT
         vars(whole)[name] = specialise(part, whole, inline=not of_one, small=of_one)

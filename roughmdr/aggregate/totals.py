@@ -2,19 +2,8 @@
 
 import math
 
-from roughmdr.aggregate.block import (
-    BEFORE,
-    ENERGY_SCALE,
-    FORCE_SCALE,
-    IN_CONTACT,
-    RADIUS_SCALE,
-    STATE,
-    STIFFNESS_SCALE,
-    TERM,
-    Block,
-    Totals,
-    law,
-)
+from roughmdr.aggregate.block import ENERGY_SCALE, FORCE_SCALE, RADIUS_SCALE, STIFFNESS_SCALE, Block, Totals, law
+from roughmdr.kernels.blocks import BEFORE, IN_CONTACT, STATE, TERM
 from roughmdr.kernels.profile.layout import BRANCHED
 from roughmdr.numerics.summation import BLOCK, accumulate, sum_by_halves
 

@@ -141,10 +141,10 @@ class Kernels(ModuleType):
     """(x or ``y_of_x``, params) -> the state to begin at."""
     y_of_x: Kernel
     """(x, params) -> the variable of a table of guesses; this and the next two where ``iterative``."""
-    approach_all: Callable[..., None]
-    """This and the next two as in ``kernels.blocks``, where they are not made with the sum."""
+    find_all: Callable[..., None]
+    """(count, contacts, params) -> None; fills in what ``kernels.blocks`` says."""
     evaluate_all: Callable[..., None]
-    near_all: Callable[..., None]
+    """Alike, from the states alone."""
     approach: Callable[..., tuple[float, float, float]]
     """(that state, x, params) -> the state after a fixed number of steps, a bound of its error, and d(state)/dx."""
     one_step: Callable[..., tuple[float, float, float]]
