@@ -18,31 +18,31 @@ from roughmdr.kernels.profile.parts import (
     elastic_or_jkr,
     functions_of,
 )
-from roughmdr.numerics.by_address import Table, through_row
 from roughmdr.numerics.jit import once, specialise
+from roughmdr.numerics.numba_parts import Table, through_row
 
 _ROW, _ROWS = "float64[::1]", "float64[:, ::1]"
-_BY_ADDRESS = {
+_ONCE_EACH = {
     "mdr_profile": f"UniTuple(float64, 4)(float64, {_ROW})",
     "reduced_load": f"float64(float64, {_ROW})",
     "softening_count": f"int64({_ROW})",
     "softening_interval": f"UniTuple(float64, 2)(int64, {_ROW})",
     "kink": f"boolean(float64, float64, {_ROW})",
     "note_shape": f"void({_ROW})",
-    "step_nodes": f"int64(int64, int64, {_ROWS}, {_ROWS})",
+    "steepness": f"float64(float64, {_ROW})",
+    "one_step_all": f"void(float64, {_ROWS}, {_ROWS})",
+}
+"""Functions of a shape that are called for an asperity, not at each step of a path, and their types."""
+_IN_SUMS = {
     "one_step": f"UniTuple(float64, 3)(float64, float64, {_ROW})",
     "radius_force_stiffness": f"UniTuple(float64, 3)(float64, {_ROW})",
     "find_all": f"void(int64, {_ROWS}, {_ROWS})",
-    "energy": f"float64(float64, {_ROW})",
-    "solve_on_branch": f"float64(float64, float64, float64, float64, int64, {_ROW})",
-    "steepness": f"float64(float64, {_ROW})",
 }
-"""The functions of a shape that kernels of any shape call, and their types."""
-_IN_SUMS = {"one_step", "radius_force_stiffness", "find_all"}
+_OF_ENERGY = {"energy": f"float64(float64, {_ROW})"}
+_BY_ADDRESS = _ONCE_EACH | _IN_SUMS | _OF_ENERGY
 OF_SHAPE = {
     *functions_of(equilibrium, elastic),
-    *("newton_step", "one_step", "two_steps", "approach", "note_shape", "step_nodes", "state_of_radius"),
-    *("steepness", "control_above_fold", "solve_on_branch"),
+    *("newton_step", "one_step", "two_steps", "approach", "one_step_all", "note_shape", "steepness", "state_of_radius"),
 } - {"prepare", "y_of_x", "x_of_y", "relative_errors", "adhesion_terms"}
 """Parts that are compiled for each shape all the same."""
 
@@ -73,9 +73,8 @@ def functions_by_address(whole: ProfileKernels, inlined: ProfileKernels) -> Call
         return specialise(find_near if whole.found_near else find_by_steps, loops)
 
     table = Table(function, _BY_ADDRESS)
-    always = set(_BY_ADDRESS) - _IN_SUMS - {"energy"}
 
     def address(summed: bool, energetic: bool) -> float:
-        return table.address(always | (_IN_SUMS if summed else set()) | ({"energy"} if energetic else set()))
+        return table.address({*_ONCE_EACH, *(_IN_SUMS if summed else ()), *(_OF_ENERGY if energetic else ())})
 
     return address

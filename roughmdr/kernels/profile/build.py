@@ -54,6 +54,30 @@ _VECTOR_CODE_OF_PARABOLOID: set[Callable[..., Any]] = {
 }
 
 
+def _vector_code(
+    shape: type[Shape], profile: Profile, plain: dict[str, Any], cohesive: bool
+) -> dict[str, Callable[..., Any]]:
+    """Return those functions of a profile that become vector code where they are inlined; what a table looks up does
+    not.
+    """
+    vector: dict[str, Callable[..., Any]] = {}
+    tabled = issubclass(shape, TabledShape)
+    if not (shape.shared or tabled):
+        alone = ProfileKernels(f"{shape.name}_alone")
+        vars(alone).update({name: compiled(plain[name], small=True) for name in ("mdr_profile", "reduced_load")})
+        several = profile.precompute is not Profile._field_defaults["precompute"]
+        vector = (
+            dict(vars(alone))
+            if several
+            else {name: specialise(part, alone, small=True) for name, part in functions_of(one_number).items()}
+        )
+    if cohesive and profile.zone_integrals is not None:
+        vector["zone_integrals"] = compiled(profile.zone_integrals, small=True)
+    if not tabled:
+        vector["kink_between"] = compiled(plain["kink_between"], small=True)
+    return vector
+
+
 @once
 def build(shape: type[Shape], *, cohesive: bool, similar: bool = False) -> ProfileKernels:
     """Return the kernels of a shape that is not a flat punch; ``cohesive`` where adhesion has a range; ``similar`` for
@@ -94,21 +118,7 @@ def build(shape: type[Shape], *, cohesive: bool, similar: bool = False) -> Profi
         parts.pop("elastic_integral")
     whole = ProfileKernels(f"dugdale_{shape.name}" if cohesive else f"{shape.name}_similar" if similar else shape.name)
     vars(whole).update(constants, **{name: compiled(part) for name, part in plain.items() if part is not None})
-    # What a table looks up is no vector code.
-    vector: dict[str, Callable[..., Any]] = {}
-    if not (shape.shared or tabled):
-        alone = ProfileKernels(f"{shape.name}_alone")
-        vars(alone).update({name: compiled(plain[name], small=True) for name in ("mdr_profile", "reduced_load")})
-        several = profile.precompute is not Profile._field_defaults["precompute"]
-        vector = (
-            dict(vars(alone))
-            if several
-            else {name: specialise(part, alone, small=True) for name, part in functions_of(one_number).items()}
-        )
-    if cohesive and profile.zone_integrals is not None:
-        vector["zone_integrals"] = compiled(profile.zone_integrals, small=True)
-    if not tabled:
-        vector["kink_between"] = compiled(plain["kink_between"], small=True)
+    vector = _vector_code(shape, profile, plain, cohesive)
     inlined = whole.copy()
     small = VECTOR_CODE | (_VECTOR_CODE_OF_PARABOLOID if shape is Paraboloid else _INLINE_OF_EDGES)
     by_address = not (cohesive or tabled or shape.shared or UNCOMPILED)

@@ -139,51 +139,37 @@ def node_beyond(indentation: float, params: Floats) -> int:
 
 
 def fill_nodes(last: int, rows: Floats) -> None:
-    """Fill in the nodes up to ``last`` of all rows."""
-    found, node = np.empty((3, rows.shape[0])), 0
-    for i in range(rows.shape[0]):
-        found[0, i] = law.fill_first_node(rows[i]) if rows[i, COUNT] > 0.0 else 0.0
-    while node < last:
-        node = law.step_nodes(node + 1, last, found, rows)
-        for i in range(rows.shape[0]):
-            if not law.trusted(found[1, i], rows[i]) and rows[i, COUNT] > 0.0:
-                law.fill_node(node, law.y_of_node(node), rows[i])
-
-
-def trusted(error: float, params: Floats) -> bool:
-    """Whether steps to a node have led to its state, with a bound of the error as from ``one_step``, which is for fixed
-    grips.
-    """
-    return bool((error < _MAX_ERROR) & (params[CONTROL] == 0.0))
-
-
-def step_nodes(node: int, last: int, found: Floats, rows: Floats) -> int:
-    """Fill in nodes from ``node`` on by steps, each for all rows at a time, so that no row waits for another; return
-    the first that is not to be trusted in every row, else the last.
-
-    ``found`` has the t of each row that is known about node 1, and room for its errors and slopes.
-    """
-    count, t, error, per = rows.shape[0], found[0], found[1], found[2]
-    for at in range(node, last + 1):
-        y = law.y_of_node(at)
-        if at > 1:
-            step = law.step_to(at, rows[0])
+    """Fill in the nodes up to ``last`` of all rows, each for all at a time, so that no row waits for another."""
+    count = rows.shape[0]
+    found = np.empty((3, count))
+    t, error, per = found[0], found[1], found[2]
+    for i in range(count):
+        t[i] = law.fill_first_node(rows[i]) if rows[i, COUNT] > 0.0 else 0.0
+    for node in range(1, last + 1):
+        y = law.y_of_node(node)
+        if node > 1:
+            step = law.step_to(node, rows[0])
             for i in range(count):
-                t[i] = law.extrapolate_node(at, step, rows[i])
+                t[i] = law.extrapolate_node(node, step, rows[i])
         for _ in range(_STEPS):
-            for i in range(count):
-                t[i], error[i], per[i] = law.one_step(t[i], law.x_of_y(y, rows[i])[0], rows[i])
+            law.one_step_all(y, found, rows)
             unsure = 0
             for i in range(count):
                 unsure += error[i] > _MAX_ERROR
             if unsure == 0:
                 break
         for i in range(count):
-            rows[i, law.first_node + 2 * at] = t[i]
-            rows[i, law.first_node + 2 * at + 1] = law.x_of_y(y, rows[i])[1] * per[i] / law.y_over_part(at)
-        unsure = 0
+            rows[i, law.first_node + 2 * node] = t[i]
+            rows[i, law.first_node + 2 * node + 1] = law.x_of_y(y, rows[i])[1] * per[i] / law.y_over_part(node)
         for i in range(count):
-            unsure += law.trusted(error[i], rows[i]) < 1
-        if unsure > 0:
-            return at
-    return last
+            # ``one_step`` is for fixed grips.
+            trusted = (error[i] < _MAX_ERROR) & (rows[i, CONTROL] == 0.0)
+            if not trusted and rows[i, COUNT] > 0.0:
+                law.fill_node(node, y, rows[i])
+
+
+def one_step_all(y: float, found: Floats, rows: Floats) -> None:
+    """Do ``one_step`` to y for all rows; ``found`` has their states, then the bounds of the errors and the slopes."""
+    t, error, per = found[0], found[1], found[2]
+    for i in range(rows.shape[0]):
+        t[i], error[i], per[i] = law.one_step(t[i], law.x_of_y(y, rows[i])[0], rows[i])

@@ -71,8 +71,7 @@ class ProfileKernels(Kernels):
     repeated: Callable[[Columns, int], bool]
     node_beyond: Callable[[float, Floats], int]
     fill_nodes: Callable[[int, Floats], None]
-    step_nodes: Callable[[int, int, Floats, Floats], int]
-    trusted: Callable[[float, Floats], bool]
+    one_step_all: Callable[[float, Floats, Floats], None]
     fill_params: Callable[..., None]
 
     two_steps: Callable[..., tuple[float, float, float]]

@@ -26,7 +26,6 @@ VECTOR_CODE: set[Callable[..., Any]] = {
     initial_guess.initial_guess,
     initial_guess.x_of_y,
     initial_guess.extrapolate_node,
-    initial_guess.trusted,
     newton.newton_step,
     newton.one_step,
     newton.two_steps,

@@ -93,12 +93,14 @@ def prepare_shared(
 
 def params_of(rows: Floats, i: int) -> Floats:
     """Return the row of one asperity."""
-    return rows[i]
+    row: Floats = rows[i]
+    return row
 
 
 def shared_params(rows: Floats, i: int) -> Floats:
     """Return the row of all asperities."""
-    return rows[0]
+    row: Floats = rows[0]
+    return row
 
 
 def scales(
