@@ -13,7 +13,7 @@ from roughmdr.ensemble.nodes import Heights, UpperTail
 from roughmdr.errors import OutOfRange
 from roughmdr.expected.table import ORDER, AdaptiveTable
 from roughmdr.numerics.arguments import Floats
-from roughmdr.numerics.chebyshev import evaluate_series
+from roughmdr.numerics.chebyshev import evaluate_series, find_piece
 from roughmdr.numerics.gauss import gauss
 from roughmdr.numerics.jit import njit
 
@@ -140,7 +140,7 @@ def _fractions_below(heights: HeightTable, y: Floats) -> Floats:
         elif y[i] >= heights.high[-1]:
             fractions[i] = heights.below[-1]
         else:
-            piece = np.searchsorted(heights.high, y[i], side="right")
+            piece = find_piece(heights.high, y[i])
             low, high = heights.low[piece], heights.high[piece]
             half, middle = 0.5 * (y[i] - low), 0.5 * (y[i] + low)
             for m in range(u.size):

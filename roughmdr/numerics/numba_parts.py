@@ -53,7 +53,7 @@ class Addressed:
 
 
 def address_of(function: Callable[..., Any], signature: str) -> int:
-    """Return the address of a function of ``njit`` for calls as numba makes them; TypeError unless it is of that type."""
+    """Return the address of a function of ``njit`` for compiled code to call; TypeError unless it is of that type."""
     (taken, returned), bare = _parsed(signature), cast(Any, function).bare()
     bare.compile(taken)
     compiled = bare.overloads[taken]
