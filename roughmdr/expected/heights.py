@@ -133,7 +133,11 @@ def _counted(below: Floats, above: Floats) -> Floats:
 def _fractions_below(heights: HeightTable, y: Floats) -> Floats:
     """Return the fraction of all heights below each y [m]."""
     fractions = np.empty(y.size)
-    u, density, before, earlier = np.empty((4, _NODES.size))
+    u, density = np.empty((2, _NODES.size))
+    before, earlier = (
+        np.empty(_NODES.size),
+        np.empty(_NODES.size),
+    )  # as in ``integral``: one form of the series serves both
     for i in range(y.size):
         if y[i] <= heights.low[0]:
             fractions[i] = 0.0
