@@ -134,10 +134,7 @@ def _fractions_below(heights: HeightTable, y: Floats) -> Floats:
     """Return the fraction of all heights below each y [m]."""
     fractions = np.empty(y.size)
     u, density = np.empty((2, _NODES.size))
-    before, earlier = (
-        np.empty(_NODES.size),
-        np.empty(_NODES.size),
-    )  # as in ``integral``: one form of the series serves both
+    before, earlier = np.empty(_NODES.size), np.empty(_NODES.size)  # apart, as in ``integral``: one form serves both
     for i in range(y.size):
         if y[i] <= heights.low[0]:
             fractions[i] = 0.0
