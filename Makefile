@@ -1,38 +1,41 @@
 # make demo: set up, compute a rough adhesive contact, show it.   make test: set up, run every check, build the docs.
-# make test-all: the long random searches as well, some 10 minutes more.
+# make test-all: the long forms of tests as well, some 40 minutes more.
 # make docs: build the documentation into docs/_build/html, examples and all.
-# make studies: measure error against run time, the extremes, and what leaving out saves; report in results/studies.
+# make studies: measure error against run time, the extremes, and what leaving out saves, in reduced forms that say what
+# they leave out; report in results/studies. make studies-full: all of it, an hour.
 PYTHON ?= python3
 VENV   := .venv
 BIN    := $(VENV)/bin
 READY  := $(VENV)/ready
+TESTS  := $(BIN)/python -m pytest -n auto
+UNCOMPILED := $(addprefix tests/,asperity kernels numerics shapes \
+  $(addsuffix .py,$(addprefix aggregate/test_,few_searches machine shapes_in_ensembles sum) \
+  $(addprefix interaction/test_,close contacts green jkr_parts jkr_shapes)))
 
-.PHONY: demo test test-all docs studies setup lint lock release clean
+.PHONY: demo test test-all docs studies studies-full setup lint lock release clean
 
 demo: setup
 	@mkdir -p results
 	@$(BIN)/roughmdr run pipelines/scenes/rubber_on_glass.toml -o results/rubber_on_glass.nc --fresh
 	@$(BIN)/roughmdr plot results/rubber_on_glass.nc -o results/rubber_on_glass.png --with-expected
 
-test: setup lint
-	$(BIN)/python -m pytest -n auto --dist loadfile
-	NUMBA_DISABLE_JIT=1 $(BIN)/python -m pytest -n auto tests/kernels tests/numerics tests/aggregate/test_sum.py \
-	  tests/interaction/test_close.py tests/interaction/test_contacts.py tests/interaction/test_green.py \
-	  tests/interaction/test_jkr_parts.py tests/aggregate/test_machine.py \
-	  --deselect tests/aggregate/test_machine.py::test_asperities_that_feel_each_other_are_loaded_to_the_same_preload \
-	  --ignore tests/numerics/test_fingerprint.py
-	@$(MAKE) --no-print-directory docs
+# Style, types and the docs, side by side; the tests; and those of kernels, sums and shapes where nothing is compiled.
+test: setup
+	@$(MAKE) --no-print-directory -j2 --output-sync=target lint docs
+	$(TESTS) --dist loadfile
+	NUMBA_DISABLE_JIT=1 $(TESTS) --dist loadfile $(UNCOMPILED)
 
-# The long forms of the random searches, benchmarks, every shape compiled, and more of it uncompiled.
 test-all: test
-	$(BIN)/python -m pytest -n auto --dist loadfile -m large
-	NUMBA_DISABLE_JIT=1 $(BIN)/python -m pytest -n auto tests/shapes tests/asperity
+	$(TESTS) --dist worksteal -m large
 
 docs: setup
 	$(BIN)/sphinx-build -q -W --keep-going -b html docs docs/_build/html
 	@echo "docs/_build/html/index.html"
 
 studies: setup
+	@$(BIN)/python pipelines/all_studies.py --quick -o results/studies
+
+studies-full: setup
 	@$(BIN)/python pipelines/all_studies.py -o results/studies
 
 lint: setup
@@ -58,7 +61,7 @@ $(READY):
 	@$(PYTHON) -m venv $(VENV) || { rm -rf $(VENV); \
 	  echo "$(PYTHON) cannot make a virtual environment; on Debian and Ubuntu: apt-get install python3-venv"; exit 1; }
 	@echo "installing the locked packages into $(VENV) (once, about a minute)"
-	@$(BIN)/python -m pip install --quiet --disable-pip-version-check --require-hashes -r requirements.lock
+	@$(BIN)/python -m pip install --quiet --no-compile --disable-pip-version-check --require-hashes -r requirements.lock
 	@$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-deps --no-build-isolation -e .
 	@cp requirements.lock $(READY)
 

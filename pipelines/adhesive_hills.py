@@ -1,11 +1,21 @@
 """Adhesive hills and summits of maps against boundary elements: python pipelines/adhesive_hills.py."""
 
+from studies.adhesive_hills.cases import CASES, QUICK
 from studies.adhesive_hills.measure import measure
 from studies.adhesive_hills.picture import draw
 from studies.adhesive_hills.report import report
+from studies.adhesive_hills.stated import FEW, MAPS
 from studies.study import Study
 
-STUDY = Study("adhesive_hills", "Adhesive hills of maps against boundary elements", measure, draw, report)
+STUDY = Study(
+    "adhesive_hills",
+    "Adhesive hills of maps against boundary elements",
+    measure,
+    draw,
+    report,
+    f"{len(QUICK)} of {len(CASES)} cases; stated errors on {sum(map(len, FEW.values()))} of "
+    f"{sum(map(len, MAPS.values()))} maps",
+)
 
 if __name__ == "__main__":
     STUDY.command()

@@ -25,15 +25,19 @@ def main(output: Path, quick: bool) -> None:
     Go on where one fails.
     """
     output.mkdir(parents=True, exist_ok=True)
-    parts, failed = ["# Results of the studies\n"], list[str]()
+    forms = "Reduced forms; `make studies-full` carries out all of each study.\n" if quick else ""
+    parts, failed = [f"# Results of the studies\n\n{forms}"], list[str]()
     for name in NAMES:
         started = time.perf_counter()
         command = [sys.executable, str(Path(__file__).with_name(f"{name}.py")), "-o", str(output)]
         done = subprocess.run([*command, *["--quick"] * quick], stdout=subprocess.PIPE, text=True, check=False)
-        click.echo(f"{name}: {time.perf_counter() - started:.0f} s", err=True)
+        took = f"{name}: {time.perf_counter() - started:.0f} s"
+        click.echo(took, err=True)
         if done.returncode:
             failed.append(name)
-        parts.append(f"## {name}\n\nfailed\n" if done.returncode else f"{done.stdout}\n![{name}]({name}.png)\n")
+        parts.append(
+            f"## {name}\n\nfailed\n" if done.returncode else f"{done.stdout}\n{took}\n\n![{name}]({name}.png)\n"
+        )
         with replace_atomically(output / "report.md") as temporary:
             temporary.write_text("\n".join(parts))
     click.echo(output / "report.md")

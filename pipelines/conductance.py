@@ -2,9 +2,17 @@
 
 from studies.conductance.measure import measure
 from studies.conductance.report import draw, report
+from studies.conductance.surfaces import CASES, QUICK
 from studies.study import Study
 
-STUDY = Study("conductance", "Conductance against boundary elements", measure, draw, report)
+STUDY = Study(
+    "conductance",
+    "Conductance against boundary elements",
+    measure,
+    draw,
+    report,
+    f"{len(QUICK)} of {len(CASES)} cases, and smaller ones",
+)
 
 if __name__ == "__main__":
     STUDY.command()

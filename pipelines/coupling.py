@@ -1,10 +1,18 @@
 """Error against run time of coupled asperities, and run time against their number: python pipelines/coupling.py."""
 
+from studies.coupling.costs import COUNTS
 from studies.coupling.measure import measure
 from studies.coupling.report import draw, report
 from studies.study import Study
 
-STUDY = Study("coupling", "Coupled asperities: error and run time", measure, draw, report)
+STUDY = Study(
+    "coupling",
+    "Coupled asperities: error and run time",
+    measure,
+    draw,
+    report,
+    f"up to {max(COUNTS[True])} of {max(COUNTS[False])} asperities, two contact fractions, one error",
+)
 
 if __name__ == "__main__":
     STUDY.command()

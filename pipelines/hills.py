@@ -1,6 +1,7 @@
 """Summits and hills of maps against boundary elements: python pipelines/hills.py."""
 
 from studies.hills.draw import draw, draw_convergence
+from studies.hills.maps import ANISOTROPIC, ISOTROPIC, QUICK
 from studies.hills.measure import measure
 from studies.hills.report import report
 from studies.study import Study
@@ -11,6 +12,7 @@ STUDY = Study(
     measure,
     {"hills": draw, "hills_convergence": draw_convergence},
     report,
+    f"{len(QUICK)} of {len(ISOTROPIC) + len(ANISOTROPIC)} maps, smaller pieces of measured ones",
 )
 
 if __name__ == "__main__":

@@ -1,10 +1,17 @@
 """Scenes drawn at random, each refused in words or physically right: python pipelines/random_scenes.py."""
 
-from studies.random_scenes.measure import measure
+from studies.random_scenes.measure import FULL, QUICK, measure
 from studies.random_scenes.report import draw, report
 from studies.study import Study
 
-STUDY = Study("random_scenes", "Scenes drawn at random", measure, draw, report)
+STUDY = Study(
+    "random_scenes",
+    "Scenes drawn at random",
+    measure,
+    draw,
+    report,
+    f"{QUICK} of {FULL} scenes, adhesion of finite range on two shapes",
+)
 
 if __name__ == "__main__":
     STUDY.command()

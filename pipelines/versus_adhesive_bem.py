@@ -1,10 +1,17 @@
 """Adhesive asperities coupled in pairs against boundary elements: python pipelines/versus_adhesive_bem.py."""
 
 from studies.study import Study
-from studies.versus_adhesive_bem.measure import measure
+from studies.versus_adhesive_bem.measure import CASES, QUICK, measure
 from studies.versus_adhesive_bem.report import draw, report
 
-STUDY = Study("versus_adhesive_bem", "Adhesive pairs against boundary elements", measure, draw, report)
+STUDY = Study(
+    "versus_adhesive_bem",
+    "Adhesive pairs against boundary elements",
+    measure,
+    draw,
+    report,
+    f"{len(QUICK)} of {len(CASES)} cases, on coarser grids",
+)
 
 if __name__ == "__main__":
     STUDY.command()

@@ -1,10 +1,17 @@
 """Independent asperities against boundary elements: python pipelines/versus_bem.py."""
 
 from studies.study import Study
-from studies.versus_bem.measure import measure
+from studies.versus_bem.measure import CASES, QUICK, measure
 from studies.versus_bem.report import draw, report
 
-STUDY = Study("versus_bem", "What independence costs: against boundary elements", measure, draw, report)
+STUDY = Study(
+    "versus_bem",
+    "What independence costs: against boundary elements",
+    measure,
+    draw,
+    report,
+    f"{len(QUICK)} of {len(CASES)} cases, and smaller ones",
+)
 
 if __name__ == "__main__":
     STUDY.command()

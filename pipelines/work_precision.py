@@ -7,7 +7,14 @@ from studies.study import Study
 from studies.work_precision.measure import measure
 from studies.work_precision.report import draw, report
 
-STUDY = Study("work_precision", "Error against run time", measure, draw, report)
+STUDY = Study(
+    "work_precision",
+    "Error against run time",
+    measure,
+    draw,
+    report,
+    "every other setting, timed once, without the last scene of each part",
+)
 
 if __name__ == "__main__":
     STUDY.command()

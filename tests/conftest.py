@@ -1,18 +1,90 @@
-"""What the tests of disturbed batches have in common: the undisturbed ones, and a folder to work in."""
+"""What all tests have in common: which are long forms, what a run has compiled, and batches to be disturbed."""
 
+import re
 import signal
+import time
+from collections.abc import Iterable
 from pathlib import Path
+from typing import Any
 
+import numba
 import pytest
 import xarray as xr
 from batches import CURVES, STATISTICS, write_scene
+from numba.core.event import Listener, register
 
 import roughmdr as rm
+from roughmdr.shapes import SHAPES, Shape
+
+COMPILED = {"paraboloid", "sphere", "truncated_cone", "tabulated"}
+"""Shapes whose tests are no long forms where functions are compiled; those of the others run uncompiled instead."""
+COMPILING = ("aggregate", "asperity", "batch", "expected", "interaction", "kernels", "shapes")
+"""Folders whose tests compile functions of the shapes that they name."""
+_PARTS = re.compile("|".join(sorted(SHAPES, key=len, reverse=True)))
+
+
+class _Meter(Listener):
+    """Counts the seconds in which this process compiles; on the controller of a run also those of its workers."""
+
+    seconds, _depth, _begun = 0.0, 0, 0.0
+
+    def on_start(self, event: object) -> None:
+        if self._depth == 0:
+            self._begun = time.perf_counter()
+        self._depth += 1
+
+    def on_end(self, event: object) -> None:
+        self._depth -= 1
+        if self._depth == 0:
+            self.seconds += time.perf_counter() - self._begun
+
+
+_METER = _Meter()
 
 
 def pytest_configure() -> None:
     """Let tests interrupt what they start, also where they run in the background of a shell, which ignores SIGINT."""
     signal.signal(signal.SIGINT, signal.default_int_handler)
+    register("numba:compile", _METER)
+
+
+def pytest_sessionfinish(session: pytest.Session) -> None:
+    """Tell the controller, where this is a worker, how long the worker has compiled."""
+    if hasattr(session.config, "workeroutput"):
+        session.config.workeroutput["compiling"] = _METER.seconds
+
+
+@pytest.hookimpl(optionalhook=True)
+def pytest_testnodedown(node: Any) -> None:
+    """Add what a worker has told."""
+    _METER.seconds += getattr(node, "workeroutput", {}).get("compiling", 0.0)
+
+
+def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter) -> None:
+    terminalreporter.write_line(f"compiling took {_METER.seconds:.0f} s in all processes of the tests")
+
+
+def _shapes_in(value: Any) -> set[str]:
+    """Return the names of the shapes that a parameter of a test is, names or holds."""
+    match value:
+        case str():
+            return set(_PARTS.findall(value))
+        case Shape():
+            return {value.name}
+        case dict():
+            return _shapes_in([*value, *value.values()])
+        case tuple() | list():
+            return set().union(*map(_shapes_in, value))
+    return set()
+
+
+def pytest_collection_modifyitems(items: Iterable[pytest.Item]) -> None:
+    """Mark tests of other shapes as long forms where functions are compiled, which takes the most of their time."""
+    for item in [] if numba.config.DISABLE_JIT else items:
+        if item.path.relative_to(Path(__file__).parent).parts[0] in COMPILING and isinstance(item, pytest.Function):
+            given = item.callspec.params.values() if hasattr(item, "callspec") else ()
+            if not _shapes_in([item.path.stem, item.name, *given]) <= COMPILED:
+                item.add_marker("large")
 
 
 @pytest.fixture(scope="module")

@@ -1,4 +1,4 @@
-"""The command line in processes of its own: exit status, messages, files."""
+"""The command line: exit status, messages, files."""
 
 import subprocess
 import sys
@@ -8,15 +8,10 @@ import numba
 import pytest
 import tomli_w
 import xarray as xr
+from command import in_a_process, roughmdr
 from scenes import scene
 
 SCENES = Path(__file__).parents[1] / "pipelines" / "scenes"
-ROUGHMDR = [sys.executable, "-c", "from roughmdr.cli import main; main()"]
-
-
-def roughmdr(*arguments: object, cwd: Path) -> subprocess.CompletedProcess[str]:
-    command = [*ROUGHMDR, *map(str, arguments)]
-    return subprocess.run(command, cwd=cwd, capture_output=True, text=True, timeout=300, check=False)
 
 
 @pytest.fixture
@@ -59,18 +54,19 @@ def test_quiet_says_nothing(small: Path) -> None:
 def test_a_run_says_that_it_compiles_and_only_then(small: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("XDG_CACHE_HOME", str(small / "cache"))
     run = "run", "small.toml", "--set", "batch.realizations=1", "--set", "adhesion.work=0", "-o"
-    says = [roughmdr(*run, name, cwd=small).stderr for name in ("first.nc", "second.nc")]
+    says = [in_a_process(*run, name, cwd=small).stderr for name in ("first.nc", "second.nc")]
     assert says[0].splitlines()[0] == "A small scene: compiling the kernels (once) ..."
     assert says[0].count("compiling") == 1
     assert says[1] == "A small scene: 1 of 1 runs\n"
 
 
+@pytest.mark.large
 @pytest.mark.skipif(numba.config.DISABLE_JIT, reason="nothing is compiled")
 def test_a_quiet_run_compiles_in_silence(small: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("XDG_CACHE_HOME", str(small / "cache"))
-    done = roughmdr("run", "small.toml", "-o", "out.nc", "--quiet", "--set", "adhesion.work=0", cwd=small)
+    done = in_a_process("run", "small.toml", "-o", "out.nc", "--quiet", "--set", "adhesion.work=0", cwd=small)
     assert (done.returncode, done.stdout, done.stderr) == (0, "", "")
-    assert list((small / "cache").rglob("*.nbi"))
+    assert list((small / "cache").rglob("*.nbc"))
 
 
 @pytest.mark.parametrize(

@@ -11,6 +11,7 @@ from types import ModuleType
 
 import numpy as np
 import pytest
+from forms import large
 from scenes import ensemble
 
 import roughmdr as rm
@@ -93,8 +94,7 @@ for batch in ({"realizations": 2}, {"estimator": "expected"}):
 """
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize(("section", "code"), [("adhesion model", _DMT), ("curve variable", _PERIMETER)])
+@pytest.mark.parametrize(("section", "code"), [("adhesion model", _DMT), large("curve variable", _PERIMETER)])
 def test_the_patches_of_the_guide_work(section: str, code: str, tmp_path: Path) -> None:
     shutil.copytree(ROOT / "roughmdr", tmp_path / "roughmdr", ignore=shutil.ignore_patterns("__pycache__"))
     (patch,) = re.findall(

@@ -13,9 +13,10 @@ import numpy as np
 import pytest
 import tomli_w
 import xarray as xr
+from command import ROUGHMDR, in_a_process, roughmdr
+from forms import large
 from pydantic import BaseModel
 from scenes import ASPERITIES, scene
-from test_cli import ROUGHMDR, roughmdr
 
 import roughmdr as rm
 from roughmdr.scene.scene import Scene
@@ -91,7 +92,7 @@ with open("/proc/self/status") as status:
 @pytest.mark.skipif(not Path("/proc/self/status").exists(), reason="the peak of a process is read from /proc")
 def test_the_plan_says_what_the_run_then_does(folder: Path) -> None:
     large = ["--set", "asperities.count=300000", "--set", "asperities.patch=0.02", "--set", "batch.realizations=6"]
-    done = roughmdr("plan", "small.toml", *large, cwd=folder)
+    done = in_a_process("plan", "small.toml", *large, cwd=folder)
     assert done.returncode == 0, done.stderr
     assert [path.name for path in folder.iterdir()] == ["small.toml"]
     assert "6 realisations x 80 steps: 6 in total" in done.stdout
@@ -188,7 +189,7 @@ def test_messages_are_in_colour_on_a_terminal_and_plain_elsewhere(folder: Path) 
     assert "\x1b" not in on_a_terminal(*command, cwd=folder, NO_COLOR="1")
 
 
-@pytest.mark.parametrize("elsewhere", [True, False])
+@pytest.mark.parametrize("elsewhere", [True, large(False)])
 def test_it_works_where_the_home_folder_cannot_be_written(folder: Path, elsewhere: bool) -> None:
     """Compiled code goes where NUMBA_CACHE_DIR says, or nowhere. Root may write anywhere: a file stands in the way."""
     (folder / "home").write_text("no folder")
@@ -199,4 +200,4 @@ def test_it_works_where_the_home_folder_cannot_be_written(folder: Path, elsewher
     assert done.returncode == 0, done.stderr
     assert (folder / "out.nc").exists()
     assert (folder / "cache").exists() == elsewhere
-    assert not elsewhere or list((folder / "cache").rglob("*.nbi"))
+    assert not elsewhere or list((folder / "cache").rglob("*.nbc"))

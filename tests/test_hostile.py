@@ -11,8 +11,8 @@ import pytest
 import tomli_w
 import xarray as xr
 from click.testing import CliRunner
+from command import ROUGHMDR, roughmdr
 from scenes import ASPERITIES, ensemble, scene
-from test_cli import ROUGHMDR, roughmdr
 
 import roughmdr as rm
 from roughmdr.batch.plan import make_plan

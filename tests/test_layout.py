@@ -5,11 +5,13 @@ import statistics
 import subprocess
 import sys
 from collections.abc import Iterator
+from functools import cache
 from graphlib import TopologicalSorter
 from pathlib import Path
 
 import pytest
 import tomli_w
+from forms import large
 from scenes import scene
 
 import roughmdr as rm
@@ -46,6 +48,7 @@ LINE_OF = {part: number for number, line in enumerate(LINES) for part in line}
 FILES = sorted(path for path in PACKAGE.rglob("*.py") if path != PACKAGE / "__init__.py")
 
 
+@cache
 def imports(path: Path) -> set[str]:
     """Every module that a file imports, anywhere in it."""
     names: set[str] = set()
@@ -73,7 +76,7 @@ def test_a_module_imports_only_from_its_own_line_or_above(path: Path) -> None:
     [
         ("dask", ["runner/"]),
         ("distributed", ["runner/"]),
-        ("numba", ["numerics/jit.py", "numerics/compiling.py", "numerics/numba_parts.py"]),
+        ("numba", ["numerics/cache.py", "numerics/compiling.py", "numerics/jit.py", "numerics/numba_parts.py"]),
         ("matplotlib", ["pictures/"]),
         ("click", ["cli/", "report/terminal.py"]),
         ("rich", ["runner/progress.py"]),
@@ -127,28 +130,29 @@ _ALWAYS_HEAVY = {"dask", "matplotlib", "xarray", "pandas", "scipy", "numba"}
         (["--help"], set()),
         (["--version"], set()),
         (["new", "new.toml"], {"scipy"}),  # whose distributions the schema beside it lists
-        (["schema"], {"scipy"}),
+        large(["schema"], {"scipy"}),
+        large(["warm", "small.toml", "--workers", "1"], {"scipy", "numba"}),
         (["cite", "out.nc"], set()),
         (["info", "out.nc"], set()),
-        (["info", "out.nc", "--json"], set()),
-        (["plan", "small.toml", "--json"], {"scipy", "numba"}),
-        (["run", "small.toml", "-o", "x.nc", "--json"], {"scipy", "numba"}),
-        (["run", "wrong.toml", "-o", "x.nc"], {"scipy"}),
-        (["generate", "small.toml", "-o", "x.nc"], {"scipy"}),
-        (["plan", "small.toml"], {"scipy", "numba"}),
+        large(["info", "out.nc", "--json"], set()),
+        large(["plan", "small.toml", "--json"], {"scipy", "numba"}),
+        large(["run", "small.toml", "-o", "x.nc", "--json"], {"scipy", "numba"}),
+        large(["run", "wrong.toml", "-o", "x.nc"], {"scipy"}),
+        large(["generate", "small.toml", "-o", "x.nc"], {"scipy"}),
+        large(["plan", "small.toml"], {"scipy", "numba"}),
         (["run", "small.toml", "-o", "x.nc"], {"scipy", "numba"}),
         (["run", "small.toml", "-o", "x.nc", "--set", "asperities.count=20000"], {"scipy", "numba", "dask"}),
-        (["fit", "curve.csv", "small.toml", "-o", "x.nc", "--free", "adhesion.work"], {"scipy", "numba"}),
+        large(["fit", "curve.csv", "small.toml", "-o", "x.nc", "--free", "adhesion.work"], {"scipy", "numba"}),
         (["plot", "out.nc", "-o", "x.png"], {"matplotlib"}),
-        (["plot", "out.nc", "-o", "x.png", "--kind", "map"], {"matplotlib", "scipy", "numba"}),
-        (["report", "out.nc", "-o", "x.html"], {"matplotlib"}),
-        (["export", "out.nc", "-o", "x.inp", "--to", "abaqus"], {"scipy"}),  # refused, it reads the scene for advice
-        (
+        large(["plot", "out.nc", "-o", "x.png", "--kind", "map"], {"matplotlib", "scipy", "numba"}),
+        large(["report", "out.nc", "-o", "x.html"], {"matplotlib"}),
+        large(["export", "out.nc", "-o", "x.inp", "--to", "abaqus"], {"scipy"}),  # refused, it reads the scene
+        large(
             ["export", "out.nc", "-o", "x.csv", "--to", "csv", "--quantity", "nodes", "--error", "0.1"],
             {"scipy", "numba"},
         ),
         (["plot", "out.nc", "-o", "x.png", "--with-expected"], {"matplotlib", "scipy", "numba"}),
-        (["plot", "out.nc", "-o", "x.png", "--with-theory"], {"matplotlib", "scipy", "numba"}),
+        large(["plot", "out.nc", "-o", "x.png", "--with-theory"], {"matplotlib", "scipy", "numba"}),
     ],
     ids=lambda value: " ".join(value) if isinstance(value, list) else "",
 )

@@ -35,6 +35,8 @@ class Study(NamedTuple):
     """The picture NAME.png, or several pictures by their names."""
     report: Callable[[xr.Dataset], str]
     """Return a few sentences and tables in Markdown."""
+    reduced: str = ""
+    """What the reduced form has of the full one."""
 
     def carry_out(self, output: Path, quick: bool) -> str:
         """Measure, write all files to the folder ``output``, and return the report."""
@@ -45,7 +47,8 @@ class Study(NamedTuple):
         for name, draw in (self.draw if isinstance(self.draw, dict) else {self.name: self.draw}).items():
             with replace_atomically(output / f"{name}.png") as temporary:
                 draw(result).savefig(temporary, dpi=160, format="png")
-        return f"## {self.title}\n\n{self.report(result).strip()}\n"
+        reduced = f"\nReduced form: {self.reduced}.\n" if quick and self.reduced else ""
+        return f"## {self.title}\n{reduced}\n{self.report(result).strip()}\n"
 
     @property
     def command(self) -> click.Command:

@@ -85,7 +85,7 @@ def compute(
     givens = Givens(effective_modulus, adhesion.work, spread, area, float(radius.max(initial=0.0)))
     assumptions = Assumptions(
         ensemble.validity_limits(radius),
-        np.count_nonzero(radius) * validity.contact_error if adhesion.model == "jkr" else 0.0,
+        np.count_nonzero(radius) * validity.contact_error if adhesion.model == "jkr" and radius.any() else 0.0,
         ensemble.resolution_error,
         ensemble.border_error,
         ensemble.origin,

@@ -16,6 +16,7 @@ from roughmdr.cli.plot import plot
 from roughmdr.cli.report import report
 from roughmdr.cli.run import run
 from roughmdr.cli.schema import schema
+from roughmdr.cli.warm import warm
 from roughmdr.report.terminal import Group
 
 
@@ -28,5 +29,5 @@ def main() -> None:
     """
 
 
-for command in (cite, export, fit, generate, info, new, plan, plot, report, run, schema):
+for command in (cite, export, fit, generate, info, new, plan, plot, report, run, schema, warm):
     main.add_command(command)

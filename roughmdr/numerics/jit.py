@@ -1,27 +1,20 @@
-"""The numba policy, in one place: no fastmath, no GIL, and a disk cache named after the sources, so that a
-change begins a new one.
+"""The numba policy, in one place: no fastmath, no GIL, and compiled code kept on disk.
 
 Kernels are compiled with ``njit`` from here. A loop that is to be handed its kernels is compiled with ``specialise``.
 """
 
 import ast
 import inspect
-import os
-import re
-import shutil
-import time
 from collections.abc import Callable
-from contextlib import suppress
 from functools import partial, wraps
-from pathlib import Path
 from types import CodeType, FunctionType, ModuleType
 from typing import Any, TypeVar, cast
 
 import numba
 
 from roughmdr.numerics import numba_parts
+from roughmdr.numerics.cache import keep_on_disk
 from roughmdr.numerics.compiling import let_collector_rest
-from roughmdr.numerics.fingerprint import COMPILED, fingerprint
 from roughmdr.numerics.rebind import rebuilt
 
 let_collector_rest()
@@ -50,41 +43,6 @@ def once(make: Callable[..., _Made]) -> Callable[..., _Made]:
         return made[key]
 
     return kept
-
-
-_FOLDER = re.compile(r"[0-9a-f]{16}-[0-9.]+\w*")  # the name of a cache folder
-_UNUSED = 30.0 * 86400.0
-"""Seconds after which the folder of other sources is removed."""
-
-
-@once
-def _cache_folder() -> str | None:
-    """Return the folder for code compiled from these sources; None where no folder can be written.
-
-    numba compares only the file of the outer function, so that a kernel inlined from another file would stay in the
-    cache after a change. A folder named after all the sources cannot be stale.
-    """
-    import platformdirs
-
-    for base in (platformdirs.user_cache_dir("roughmdr"), _config.CACHE_DIR):  # the second is NUMBA_CACHE_DIR
-        folder = Path(base) / f"{fingerprint(COMPILED)}-{numba.__version__}"
-        with suppress(OSError):
-            if base:
-                if not folder.exists():
-                    folder.mkdir(parents=True, exist_ok=True)
-                    _remove_unused(folder.parent)
-                if os.access(folder, os.W_OK):
-                    os.utime(folder)
-                    return str(folder)
-    return None
-
-
-def _remove_unused(base: Path) -> None:
-    """Remove the folders of sources that no program has used for a month."""
-    for folder in base.iterdir():
-        with suppress(OSError):
-            if _FOLDER.fullmatch(folder.name) and folder.stat().st_mtime < time.time() - _UNUSED:
-                shutil.rmtree(folder)
 
 
 def njit(function: _Function, *, inline: bool = False, small: bool = False) -> _Function:
@@ -122,15 +80,10 @@ def _renamed(function: FunctionType, suffix: str) -> FunctionType:
 
 def _kept_on_disk(decorator: Callable[..., Any], function: Callable[..., Any]) -> Any:
     """Return a function compiled by a decorator of numba, with the options that all have."""
-    folder = _cache_folder()
-    with numba_parts.lock:  # numba's folder is a setting of the process
-        before = _config.CACHE_DIR
-        if folder is not None:
-            _config.CACHE_DIR = folder
-        try:
-            return decorator(error_model="numpy", cache=folder is not None)(function)
-        finally:
-            _config.CACHE_DIR = before
+    whole = decorator(error_model="numpy")(function)
+    if not _config.DISABLE_JIT:
+        keep_on_disk(whole)
+    return whole
 
 
 @once

@@ -88,7 +88,7 @@ class Processes:
 
         context = multiprocessing.get_context("spawn")  # a fork of a process with threads may hang
         halt = context.Event()
-        group = _ProcessGroup(self.workers, context, halt)
+        group = ProcessGroup(self.workers, context, halt)
         waiting: dict[int, Task] = {}
 
         def done(number: int, result: TaskResult) -> None:
@@ -110,7 +110,7 @@ class Processes:
                     except BrokenProcessPool:
                         losses += 1
                         group.end()
-                        group = _ProcessGroup(self.workers, context, halt)
+                        group = ProcessGroup(self.workers, context, halt)
                         if alone:
                             sink(failed(waiting.pop(first), "the process that computed it died"))
         except BaseException:
@@ -121,7 +121,7 @@ class Processes:
             group.end()
 
 
-class _ProcessGroup:
+class ProcessGroup:
     """A pool of processes that end with it, and with this process, however that ends."""
 
     def __init__(self, workers: int, context: SpawnContext, halt: Event) -> None:

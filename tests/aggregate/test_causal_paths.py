@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 import pytest
 import xarray as xr
+from forms import large
 from scenes import ASPERITIES, scene
 
 import roughmdr as rm
@@ -91,7 +92,7 @@ def test_independent_with_adhesion(adhesion: str, control: str) -> None:
 
 @pytest.mark.filterwarnings("ignore::UserWarning")
 @pytest.mark.parametrize("control", CONTROLS)
-@pytest.mark.parametrize("order", [1, 2])
+@pytest.mark.parametrize("order", [large(1), 2])
 @pytest.mark.parametrize("coupling", [FREE, PERIODIC], ids=["free", "periodic"])
 def test_adhesive_pairs_that_come_to_overlap(coupling: dict[str, Any], order: int, control: str) -> None:
     rng = np.random.default_rng([3, order, CONTROLS.index(control)])

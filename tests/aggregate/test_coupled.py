@@ -10,6 +10,7 @@ import pytest
 import tomli_w
 import xarray as xr
 from batches import assert_same
+from forms import large
 from scenes import ASPERITIES, scene
 
 import roughmdr as rm
@@ -40,7 +41,7 @@ def base() -> xr.Dataset:
     return rm.run(coupled())
 
 
-@pytest.mark.parametrize(("workers", "runs_per_task"), [(1, 1), (1, 4), (2, 2)])
+@pytest.mark.parametrize(("workers", "runs_per_task"), [large(1, 1), large(1, 4), (2, 2)])
 def test_the_same_bits_for_any_workers_and_tasks(
     base: xr.Dataset, tmp_path: Path, workers: int, runs_per_task: int
 ) -> None:
@@ -105,7 +106,7 @@ print("loaded:", *sorted(sys.modules))
 """
 
 
-@pytest.mark.parametrize("interaction", [None, PAIRWISE])
+@pytest.mark.parametrize("interaction", [None, large(PAIRWISE)])
 def test_without_interaction_nothing_of_it_is_imported(tmp_path: Path, interaction: dict[str, Any] | None) -> None:
     table = coupled(interaction=interaction, batch=None)
     (tmp_path / "scene.toml").write_text(tomli_w.dumps(table))

@@ -73,6 +73,7 @@ def test_of_a_lattice_the_mean_field_is_the_field_of_all_sites() -> None:
     assert coupling_of(PERIODIC, E, (1e-3, 1e-3), distance) == pytest.approx(green[0].sum() / 56, rel=1e-3)
 
 
+@pytest.mark.large
 @pytest.mark.parametrize(
     ("spacings", "within"),
     [

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 import xarray as xr
+from forms import large
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from scenes import WIDER_SHAPES, ensemble
@@ -69,7 +70,7 @@ def rough(kind: str, count: int, seed: int, std: float = 1e-7) -> xr.Dataset:
 
 @pytest.mark.filterwarnings("ignore::roughmdr.errors.LimitWarning")
 @pytest.mark.parametrize(("kind", "extra"), CASES, ids=lambda each: each if isinstance(each, str) else "".join(each))
-@pytest.mark.parametrize(("count", "steps"), [(1, 3), (2, 6), (7, 9), (25, 40)])
+@pytest.mark.parametrize(("count", "steps"), [(1, 3), large(2, 6), (7, 9), large(25, 40)])
 def test_it_is_that_of_the_plain_way(kind: str, extra: dict[str, Any], count: int, steps: int) -> None:
     law: dict[str, Any] = {"effective_modulus": E, "work": W, **extra}
     for seed in range(3):

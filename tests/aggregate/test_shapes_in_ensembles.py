@@ -7,9 +7,11 @@ indentation of its equilibria lies below that of the flat, and down while it lie
 import math
 from typing import Any
 
+import numba
 import numpy as np
 import pytest
 import xarray as xr
+from forms import large_where_compiled
 from scenes import SCENE, WIDER_SHAPES, ensemble, scene
 
 import roughmdr as rm
@@ -56,11 +58,11 @@ def walk(shape: Any, work: float, deltas: np.ndarray, finest: float) -> np.ndarr
 
 
 BRANCHED = {
-    "truncated cone": (rm.TruncatedCone(S, b), (4.6, 6.0)),
-    "truncated paraboloid": (rm.TruncatedParaboloid(R, b), (6.6, 9.0)),
-    "rounded cone": (rm.RoundedCone(S, b), (3.65, 3.8)),
-    "nearly flat cap": (rm.CappedParaboloid(R, 40.0 * R, b), (7.0,)),
-    "table of two steps": (
+    "truncated_cone": (rm.TruncatedCone(S, b), (4.6, 6.0)),
+    "truncated_paraboloid": (rm.TruncatedParaboloid(R, b), (6.6, 9.0)),
+    "rounded_cone": (rm.RoundedCone(S, b), (3.65, 3.8)),
+    "capped_paraboloid": (rm.CappedParaboloid(R, 40.0 * R, b), (7.0,)),
+    "tabulated": (
         rm.Tabulated(np.array([0, 1, 2, 3, 4, 5, 6, 7, 8]) * 1e-6, np.array([0, 0, 1, 2, 3, 6, 9, 12, 15]) * 1e-7),
         (0.3, 0.6, 1.0, 2.0),
     ),
@@ -88,6 +90,7 @@ def test_contacts_with_several_branches_on_a_winding_path(case: str) -> None:
         assert near.mean() > 0.95, (omega, law.contact_radius_sum.values, expected)
 
 
+@pytest.mark.skipif(numba.config.DISABLE_JIT, reason="22 000 steps take a minute")
 @pytest.mark.parametrize("case", BRANCHED)
 def test_their_energy_balance_closes(case: str) -> None:
     """The work over a closed cycle, by a fine trapezoidal rule, is what the jumps dissipate."""
@@ -211,6 +214,7 @@ def test_realisations_without_asperities_have_no_force(shape: str, work: float) 
     assert not made.pull_off_force.any()
 
 
+@large_where_compiled
 def test_a_common_profile_is_stored_and_read_back(tmp_path: Any) -> None:
     for shape in ("power_series", "tabulated"):
         kept = {name: value for name, value in SCENE["asperities"].items() if name != "radius"}
@@ -277,6 +281,7 @@ def test_what_a_shape_cannot_do_is_refused() -> None:
         rm.indent(rm.Sphere(1e-6), effective_modulus=1e9, contact_radius=1e-6)
 
 
+@large_where_compiled
 def test_a_tip_without_a_slope_out_of_contact() -> None:
     """r^0.7 is upright at its tip, where the summits are that the flat does not reach."""
     data = ensemble([1e-6, -1e-3], shape="power_series").assign(
@@ -296,6 +301,7 @@ def test_a_contact_that_reaches_the_equator_has_a_slope_that_a_float_holds() -> 
     assert result.edge_slope.item() > 1e300
 
 
+@large_where_compiled
 def test_a_form_that_no_float_holds_is_refused_and_nothing_else() -> None:
     """b^2 over the radius of the edge, which numpy would warn of."""
     parameters = {"flat_radius": 1.0, "edge_radius": 5e-324}

@@ -4,6 +4,7 @@ import subprocess
 import sys
 
 import pytest
+from forms import large
 
 _LATER = """
 import sys, roughmdr
@@ -52,7 +53,9 @@ assert xarray.__spec__.loader is xarray.__loader__
 
 
 @pytest.mark.parametrize(
-    "order", [_LATER, _FIRST, _AGAIN, _THREADS, _LOOKED_FOR, _FAILED], ids=lambda order: order.strip().split("\n")[0]
+    "order",
+    [_LATER, _FIRST, *map(large, [_AGAIN, _THREADS, _LOOKED_FOR, _FAILED])],
+    ids=lambda order: order.strip().split("\n")[0],
 )
 def test_it_is_registered_once_xarray_is_there(order: str) -> None:
     done = subprocess.run(

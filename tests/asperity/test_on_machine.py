@@ -7,6 +7,7 @@ import mpmath
 import numpy as np
 import pytest
 import xarray as xr
+from forms import large_where_compiled
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from oracles.spring_in_series import (
@@ -361,6 +362,7 @@ def test_dugdale_attracts_from_its_range_on(name: str) -> None:
     assert state.delta.min() < -gap  # so that it jumps
 
 
+@large_where_compiled
 def test_a_tip_that_is_steep_is_attracted_without_a_jump_by_grips_but_not_by_a_soft_spring() -> None:
     tip, strength = rm.Cone(SLOPE), 1e5
     assert 4.0 * strength / (math.pi * E) < SLOPE

@@ -1,7 +1,5 @@
 """Scenes of asperities that adhere and feel each other: the whole way from the table to the file."""
 
-import subprocess
-import sys
 import warnings
 from pathlib import Path
 from typing import Any
@@ -10,6 +8,8 @@ import numpy as np
 import pytest
 import tomli_w
 import xarray as xr
+from command import roughmdr
+from forms import large
 from scenes import scene
 
 import roughmdr as rm
@@ -33,6 +33,7 @@ def sticky(realizations: int = 4, **changes: Any) -> dict[str, Any]:
     return scene(batch={"realizations": realizations}, **{**table, **changes})
 
 
+@pytest.mark.large
 def test_results_are_bit_for_bit_those_of_any_number_of_workers_and_of_a_resume(tmp_path: Path) -> None:
     one = rm.run(sticky(), out=tmp_path / "one.nc", workers=1)
     two = rm.run(sticky(), out=tmp_path / "two.nc", workers=2)
@@ -62,10 +63,7 @@ def test_commands_foresee_and_describe_them(tmp_path: Path) -> None:
     (tmp_path / "scene.toml").write_text(tomli_w.dumps(sticky()))
 
     def command(*words: str) -> str:
-        done = subprocess.run(
-            [sys.executable, "-c", "from roughmdr.cli import main; main()", *words],
-            cwd=tmp_path, capture_output=True, text=True, check=False,
-        )  # fmt: skip
+        done = roughmdr(*words, cwd=tmp_path)
         assert done.returncode == 0, done.stderr
         return done.stdout
 
@@ -94,7 +92,9 @@ def test_contacts_that_overlap_as_soon_as_they_are_made_are_told() -> None:
     assert any("(1 pairs): jump-on radius 5.84 um, distance 11 um" in line for line in told), told
 
 
-@pytest.mark.parametrize("interaction", [{"model": "pairwise", "order": 1}, {"model": "pairwise", "boundary": "free"}])
+@pytest.mark.parametrize(
+    "interaction", [large({"model": "pairwise", "order": 1}), {"model": "pairwise", "boundary": "free"}]
+)
 def test_steps_without_an_equilibrium_have_no_value_and_are_marked(tmp_path: Path, interaction: Any) -> None:
     """Contacts pressed into each other until they cover the patch; the file holds what there is, and can be read."""
     crowded = {**FEW, "patch": "60 um", "placement": "random", "height": {"distribution": "normal", "std": "3 um"}}

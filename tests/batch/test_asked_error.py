@@ -428,6 +428,7 @@ def test_results_with_missing_realisations_can_be_looked_at(keep: str, tmp_path:
         assert "done" in line
 
 
+@pytest.mark.large
 @pytest.mark.parametrize("name", SCENES)
 def test_the_error_is_met_and_little_is_wasted(name: str) -> None:
     """Of 100 runs 95 come to the error that was asked for; half of them with few more than the fewest realisations."""

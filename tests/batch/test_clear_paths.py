@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 import tomli_w
 import xarray as xr
+from forms import large
 from scenes import ASPERITIES, ensemble, scene
 
 import roughmdr as rm
@@ -63,7 +64,7 @@ def test_nothing_touches_or_attracts_at_both_ends(shape: str, adhesion: Any) -> 
     assert (result.contact_count.max("step") > 0.0).all()
 
 
-@pytest.mark.parametrize("adhesion", [None, JKR, DUGDALE, {**DUGDALE, "model": "auto"}], ids=str)
+@pytest.mark.parametrize("adhesion", [None, JKR, large(DUGDALE), large({**DUGDALE, "model": "auto"})], ids=str)
 @pytest.mark.parametrize(
     "height",
     [
@@ -153,8 +154,10 @@ def test_more_realisations_reuse_those_that_are_there(tmp_path: Path) -> None:
     np.testing.assert_array_equal(before.separation, other.separation)
 
 
-@pytest.mark.parametrize("adhesion", [None, JKR, DUGDALE], ids=str)
-@pytest.mark.parametrize("target", [{"contact_fraction": 0.02}, {"contact_fraction": 1e-4}, {"pressure": "2 kPa"}])
+@pytest.mark.parametrize("adhesion", [None, JKR, large(DUGDALE)], ids=str)
+@pytest.mark.parametrize(
+    "target", [{"contact_fraction": 0.02}, large({"contact_fraction": 1e-4}), {"pressure": "2 kPa"}]
+)
 def test_the_stop_is_where_the_expected_law_has_the_target(adhesion: Any, target: dict[str, Any]) -> None:
     from roughmdr.schema.units import quantity
 

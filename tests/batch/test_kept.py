@@ -48,6 +48,7 @@ def state(folder: Path) -> dict[str, tuple[int, bytes]]:
     return {path.name: (path.stat().st_mtime_ns, path.read_bytes()) for path in folder.iterdir()}
 
 
+@pytest.mark.large
 def test_a_batch_at_work_stopped_killed_and_resumed(tmp_path: Path) -> None:
     folder = tmp_path / "batch"
     parts = folder / "out.nc.parts"
@@ -82,6 +83,7 @@ def test_a_batch_at_work_stopped_killed_and_resumed(tmp_path: Path) -> None:
     assert not parts.exists()
 
 
+@pytest.mark.large
 def test_while_it_runs_the_run_is_not_disturbed(tmp_path: Path) -> None:
     folder = tmp_path / "batch"
     parts = folder / "out.nc.parts"

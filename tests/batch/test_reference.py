@@ -10,6 +10,7 @@ import pytest
 import tomli_w
 import xarray as xr
 from click.testing import CliRunner
+from forms import large
 from oracles.boundary_elements import HeightMap
 from scenes import scene
 
@@ -225,7 +226,7 @@ def test_commands_tell_and_draw_it(tmp_path: Path) -> None:
     [
         ({"reference": None}, "believe boundary elements most"),
         ({"reference": None, "interaction": None}, 'or take asperities.model = "hills" with [interaction]'),
-        (
+        large(
             {"reference": None, "adhesion": {"model": "jkr", "work": 1e-6}},
             "believe hills in pairs as far as they have values",
         ),
@@ -244,6 +245,7 @@ def test_advice_says_which_model_to_believe(changes: dict[str, Any], advised: st
     assert advised in done.output
 
 
+@pytest.mark.large
 def test_the_error_is_relative_to_the_force_that_is_asked_for() -> None:
     coarse, fine = (rm.run(of_spectrum(reference={**ELEMENTS, "error": each})) for each in (0.2, 0.005))
     assert float(coarse["reference_points"].max()) < float(fine["reference_points"].max())

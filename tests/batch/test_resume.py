@@ -242,7 +242,7 @@ def held_by(result: xr.Dataset) -> set[tuple[str, str, str, int]]:
 
 
 @settings(
-    max_examples=int(os.environ.get("ROUGHMDR_RESULTS", "20")),
+    max_examples=int(os.environ.get("ROUGHMDR_RESULTS", "5")),
     deadline=None,
     suppress_health_check=[HealthCheck.function_scoped_fixture],
 )

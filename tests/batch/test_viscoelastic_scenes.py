@@ -81,6 +81,7 @@ def test_exponential_heights_have_a_closed_form(speed: float) -> None:
     np.testing.assert_allclose(force, left * elastic, rtol=1e-9)
 
 
+@pytest.mark.large
 def test_the_expected_law_is_the_mean_of_realisations() -> None:
     expected = rm.run(viscoelastic(batch={"estimator": "expected"})).force[0]
     many = rm.run(viscoelastic(batch={"realizations": 200}, output={"keep": "statistics"}))

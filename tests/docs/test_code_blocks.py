@@ -14,6 +14,7 @@ import tomllib
 from pathlib import Path
 
 import pytest
+from forms import large
 from sybil import Example, Sybil
 from sybil.parsers.myst import CodeBlockParser, PythonCodeBlockParser
 
@@ -21,6 +22,17 @@ from roughmdr.scene.read import read
 
 ROOT = Path(__file__).parent.parent.parent
 PAGES = [ROOT / "README.md", *sorted(path for path in (ROOT / "docs").rglob("*.md") if "_build" not in path.parts)]
+LONG = [
+    "adhesion",
+    "analysis",
+    "asperities",
+    "batches",
+    "contact_engineering",
+    "greenwood_williamson",
+    "layers",
+    "paths",
+]
+"""Pages whose blocks take longest: long forms."""
 LANGUAGES = {"python", "toml", "sh", "text", "bibtex"}
 STARTER = (ROOT / "roughmdr" / "starter.toml").read_text()
 
@@ -60,7 +72,11 @@ READER = Sybil(
 )
 
 
-@pytest.mark.parametrize("page", PAGES, ids=lambda path: str(path.relative_to(ROOT)))
+@pytest.mark.parametrize(
+    "page",
+    [large(path) if path.stem in LONG else path for path in PAGES],
+    ids=lambda path: str(path.relative_to(ROOT)),
+)
 def test_the_blocks_of_a_page_run(page: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     (tmp_path / "pipelines").symlink_to(ROOT / "pipelines")

@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from forms import large
 from studies.hills.maps import ANISOTROPIC, ISOTROPIC
 from studies.hills.maps import SIDE as SIDE_OF_CASES
 from studies.hills.press import square
@@ -86,8 +87,8 @@ def test_contacts_at_opposite_rims_are_two_where_the_map_ends() -> None:
         assert grid.patches().contacts == contacts
 
 
-@pytest.mark.parametrize("periodic", [True, False])
-@pytest.mark.parametrize("error", [0.1, 0.02])
+@pytest.mark.parametrize("periodic", [True, large(False)])
+@pytest.mark.parametrize("error", [0.1, large(0.02)])
 def test_the_error_asked_for_is_met(periodic: bool, error: float) -> None:
     height_map = of(96, periodic=periodic)
     surface = surface_of_map(height_map, np.sort(height_map.height.ravel())[-20:], periodic=periodic)

@@ -156,6 +156,7 @@ def test_coupled_hills_press_as_boundary_elements_do(seed: int, hurst: float) ->
     assert (np.abs(found.contact_fraction / fraction - 1.0) < 0.35).all()
 
 
+@pytest.mark.large
 def test_noise_moves_hills_less_than_summits() -> None:
     """Noise of 3 % of the r.m.s. height, over several maps."""
     moved: dict[Any, list[float]] = {hills_of: [], summits_of: []}

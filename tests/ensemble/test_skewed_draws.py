@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 import xarray as xr
 from batches import interrupted
+from forms import large
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from scenes import ASPERITIES, scene
@@ -87,7 +88,12 @@ def test_only_heavy_tailed_streams_are_followed() -> None:
 
 @pytest.mark.parametrize(
     ("spread", "count", "relative", "method"),
-    [(1.0, 1, 0.1, "sampled"), (3.0, 20, 0.1, "sampled"), (10.0, 20, 0.2, "sampled"), (10.0, 20, 0.2, "stratified")],
+    [
+        large(1.0, 1, 0.1, "sampled"),
+        (3.0, 20, 0.1, "sampled"),
+        large(10.0, 20, 0.2, "sampled"),
+        large(10.0, 20, 0.2, "stratified"),
+    ],
 )
 def test_the_error_is_met_though_few_asperities_bear_most_of_the_force(
     spread: float, count: int, relative: float, method: str

@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from forms import large
 from pydantic import ValidationError
 from scipy.special import ndtri
 
@@ -36,7 +37,7 @@ def heights(realization: int = 0, seed: int = 1, **changes: Any) -> Floats:
 
 
 @pytest.mark.parametrize("anisotropy", [1.0, 4.0])
-@pytest.mark.parametrize("unit", [1.0, 1e3])
+@pytest.mark.parametrize("unit", [1.0, large(1e3)])
 def test_the_mean_square_is_the_one_given(anisotropy: float, unit: float) -> None:
     lengths = {"patch": 1e-4 * unit, "long_wave": 4e-5 * unit, "short_wave": 8e-6 * unit, "anisotropy": anisotropy}
     for given in ({"rms_height": 1e-6 * unit}, {"rms_slope": 0.05}):

@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import xarray as xr
+from forms import large
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -41,15 +42,15 @@ def maps(tmp_path_factory: pytest.TempPathFactory) -> Path:
     ("name", "keys", "most"),
     [
         ("whole.npy", {}, 1.5),
-        ("whole.npz", {}, 1.5),
+        large("whole.npz", {}, 1.5),
         ("whole.nc", {}, 1.5),
-        ("turned.nc", {}, 1.5),
-        ("gaps.npy", {}, 1.5),
-        ("packed.nc", {}, 1.5),
-        ("whole.npy", {"periodic": True}, 1.5),
-        ("whole.npy", {"cutoff": "60 nm"}, 1.5),
-        ("whole.npy", {"cutoff": "60 nm", "periodic": True}, 2.0),
-        ("gaps.npy", {"cutoff": "60 nm"}, 2.5),
+        large("turned.nc", {}, 1.5),
+        large("gaps.npy", {}, 1.5),
+        large("packed.nc", {}, 1.5),
+        large("whole.npy", {"periodic": True}, 1.5),
+        large("whole.npy", {"cutoff": "60 nm"}, 1.5),
+        large("whole.npy", {"cutoff": "60 nm", "periodic": True}, 2.0),
+        large("gaps.npy", {"cutoff": "60 nm"}, 2.5),
     ],
 )
 def test_a_map_takes_little_extra_memory(

@@ -93,6 +93,7 @@ def test_summits_do_not_depend_on_the_grid_they_are_sought_on() -> None:
     np.testing.assert_allclose(np.sort(coarse.height), np.sort(fine.height), rtol=1e-9)
 
 
+@pytest.mark.large
 def test_detected_summits_follow_the_distribution() -> None:
     result = summits(3, (16,), 100_000)
     assert result.summit_height.size == result.attrs["summits"] > 3000

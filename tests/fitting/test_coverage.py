@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from forms import large
 from measurements import CASES, inside, noise_of
 
 import roughmdr as rm
@@ -9,8 +10,8 @@ import roughmdr as rm
 FAST = 20
 
 
-@pytest.mark.parametrize("stated", [False, True], ids=["unstated", "stated"])
-@pytest.mark.parametrize("noise", ["constant", "proportional"])
+@pytest.mark.parametrize("stated", [False, large(True)], ids=["unstated", "stated"])
+@pytest.mark.parametrize("noise", [large("constant"), "proportional"])
 @pytest.mark.parametrize(
     ("name", "count"),
     [

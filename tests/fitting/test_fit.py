@@ -35,6 +35,7 @@ def test_starts_off_by_three_converge(name: str, factors: tuple[float, float]) -
     assert "warnings" not in far.attrs or name == "offset"
 
 
+@pytest.mark.large
 def test_on_a_machine() -> None:
     case = CASES["machine"]
     fit = fit_once(case, {"adhesion.work": 1.5, "material.modulus": 0.7})

@@ -8,19 +8,14 @@ from pathlib import Path
 import pytest
 import tomli_w
 import xarray as xr
+from command import roughmdr
 from measurements import CASES, noise_of
 
 import roughmdr as rm
 from roughmdr.errors import StoreError
 from roughmdr.fitting.stored import read_fit
 
-ROUGHMDR = [sys.executable, "-c", "from roughmdr.cli import main; main()"]
 FREE = "--free", "adhesion.work, material.modulus"
-
-
-def roughmdr(*arguments: object, cwd: Path) -> subprocess.CompletedProcess[str]:
-    command = [*ROUGHMDR, *map(str, arguments)]
-    return subprocess.run(command, cwd=cwd, capture_output=True, text=True, timeout=300, check=False)
 
 
 @pytest.fixture(scope="module")

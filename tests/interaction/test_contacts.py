@@ -6,6 +6,7 @@ from typing import Any
 import numba
 import numpy as np
 import pytest
+from forms import large_where_compiled
 from scipy.integrate import quad
 from scipy.optimize import brentq
 
@@ -173,6 +174,7 @@ def test_a_surface_curved_away_more_than_the_tip_is_no_disc(name: str) -> None:
     assert all(math.isfinite(value) for value in found.values())
 
 
+@large_where_compiled
 def test_without_load_there_is_no_contact() -> None:
     for shape in EXAMPLES.values():
         found, _ = response(shape, -0.01, 0.3)

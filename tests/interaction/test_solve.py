@@ -5,6 +5,7 @@ from typing import Any
 import numpy as np
 import pytest
 import xarray as xr
+from forms import large
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from scenes import ensemble
@@ -153,7 +154,7 @@ def test_the_same_bits_twice_and_a_path_has_no_memory(count: int) -> None:
     assert_close(law(made, down[-1:]), first.isel(step=[-1]), 1e-6)
 
 
-@pytest.mark.parametrize("boundary", ["free", "periodic"])
+@pytest.mark.parametrize("boundary", ["free", large("periodic")])
 def test_the_mesh_is_as_the_sum_over_pairs(boundary: str, monkeypatch: pytest.MonkeyPatch) -> None:
     made, down = random(600, placement="random"), [1.5e-6, 0.0, -1e-6]
     monkeypatch.setattr(solve, "DENSE_UP_TO", {"periodic": 0, "free": 0})

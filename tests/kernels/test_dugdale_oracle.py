@@ -20,6 +20,7 @@ def asked(exponent: float, tabor: float) -> tuple[rm.PowerLaw, dict[str, float]]
     return shape, {"effective_modulus": E, "work": W, "strength": strength}
 
 
+@pytest.mark.large
 @pytest.mark.parametrize("tabor", [3e-3, 0.2, 1.4, 300.0])
 @pytest.mark.parametrize("exponent", [0.53, 1.0, 2.0, 50.0, 200.0])
 def test_every_answer_is_as_accurate_as_promised(exponent: float, tabor: float) -> None:

@@ -14,6 +14,7 @@ import numba
 import numpy as np
 import pytest
 import xarray as xr
+from forms import large_where_compiled
 from test_references import mp, shape_of
 
 import roughmdr as rm
@@ -86,14 +87,8 @@ def shapes() -> list[Case]:
 
 SLOW = ("tabulated", "power_series", "sphere")
 """Shapes that take minutes when they are not compiled."""
-COMPILED = (*SLOW, "maugis", "truncated_cone", "flat_punch")
-"""Shapes that every run of the tests compiles; the others are run uncompiled, and compiled with the large tests."""
 CASES = [
-    pytest.param(
-        case,
-        id=case.name,
-        marks=[] if numba.config.DISABLE_JIT or case.name.startswith(COMPILED) else [pytest.mark.large],
-    )
+    pytest.param(case, id=case.name)
     for case in [*maugis(), *shapes()]
     if not (numba.config.DISABLE_JIT and case.name.startswith(SLOW))
 ]
@@ -196,10 +191,9 @@ def test_pull_off_is_where_the_contact_ends(case: Case, control: Control) -> Non
     assert float(inside.cohesive_radius) > 0.0
 
 
+@large_where_compiled
 @pytest.mark.parametrize("control", CONTROLS)
-@pytest.mark.parametrize(
-    "unit", [pytest.param(unit, marks=[] if numba.config.DISABLE_JIT else pytest.mark.large) for unit in (1.0, 1e-3)]
-)
+@pytest.mark.parametrize("unit", [1.0, 1e-3])
 def test_a_punch_with_a_sharp_edge_pulls_off_as_a_flat_one(unit: float, control: Control) -> None:
     """But for a part that goes with the radius of the edge; so it comes to JKR as steadily as that."""
     b, law = 1e-5 * unit, {"effective_modulus": 1e9, "work": 0.05 * unit}

@@ -6,7 +6,6 @@ import numba
 import numpy as np
 import pytest
 from benchmarks.evaluations import CONTACTS, EXAMPLES, MODULUS, WORK, evaluations
-from benchmarks.process import in_new_process
 
 from roughmdr.kernels.adhesion import Adhesion
 from roughmdr.kernels.choose import choose
@@ -15,18 +14,22 @@ from roughmdr.kernels.profile.layout import COUNT
 from roughmdr.shapes import SHAPES
 from roughmdr.shapes.power_profiles import profile_of
 
+counted = pytest.mark.skipif(not numba.config.DISABLE_JIT, reason="calls are counted where nothing is compiled")
 
+
+@counted
 @pytest.mark.parametrize("strength", [2e4, 2e5, 2e6], ids=["soft", "middling", "strong"])
 @pytest.mark.parametrize("name", EXAMPLES)
 def test_few_integrals_are_evaluated(name: str, strength: float) -> None:
-    once, each, searches = in_new_process(evaluations, name, strength, NUMBA_DISABLE_JIT="1")
+    once, each, searches = evaluations(name, strength)
     assert 0 < once <= 600
     assert 0 < each <= 7 * CONTACTS
     assert searches <= CONTACTS // 12
 
 
+@counted
 def test_asperities_that_are_alike_are_prepared_once() -> None:
-    one, many = (in_new_process(evaluations, "cone", 2e5, alike, NUMBA_DISABLE_JIT="1") for alike in (1, 5))
+    one, many = (evaluations("cone", 2e5, alike) for alike in (1, 5))
     assert many == one
 
 

@@ -99,6 +99,7 @@ def test_statistics_are_those_of_the_curves() -> None:
     np.testing.assert_array_equal(kept.conductance_error, curves.conductance_error.max("realization"))
 
 
+@pytest.mark.large
 def test_boundary_elements_beside_it() -> None:
     result = rm.run(conducting(**PAIRS | {"reference": {"model": "boundary_elements", "error": 0.02}}))
     for name in NAMES:

@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from forms import large
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from oracles.curved_body import force_at
@@ -185,7 +186,7 @@ def test_the_stiffness_is_the_slope_of_the_force() -> None:
 
 
 @pytest.mark.parametrize(("alpha", "low", "high"), [(0.04, 0.93, 1.0), (1.0, 0.4, 0.75)])
-@pytest.mark.parametrize("mu", [4.0, 17.0])
+@pytest.mark.parametrize("mu", [4.0, large(17.0)])
 def test_the_peak_pressure_after_greenwood_and_tripp(alpha: float, low: float, high: float, mu: float) -> None:
     """Hertz's within 7 % where alpha = sigma R/a0^2 < 0.05, whatever mu is (K. L. Johnson, Contact Mechanics, 13.5)."""
     asperity = 1e-6
@@ -220,6 +221,7 @@ def effective_work(modulus: float, deepest: float) -> float:
     return float(np.maximum(tension, 0.0).sum() * (s[1] - s[0]))
 
 
+@pytest.mark.large
 def test_pull_off_lies_between_those_of_jkr_and_of_a_rigid_bulk() -> None:
     """-3/2 pi w R where the bulk is compliant over the range of the layer; w its own work of separation."""
     modulus, down = 1e6, np.linspace(20.0, -20.0, 30) * STD

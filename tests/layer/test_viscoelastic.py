@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from forms import large
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from oracles.viscoelastic import Triangle
@@ -68,7 +69,7 @@ def test_a_cone_pressed_at_constant_speed() -> None:
     ("terms", "speed", "back", "dwell"),
     [
         ([(0.6, 0.3)], 1e-6, 1e-6, 0.0),
-        ([(0.2, 0.01), (0.7, 2.0)], 1e-6, 3e-6, 0.4),
+        large([(0.2, 0.01), (0.7, 2.0)], 1e-6, 3e-6, 0.4),
         ([(1.0, 0.5)], 2e-6, 0.2e-6, 0.1),
     ],
 )

@@ -1,7 +1,5 @@
 """Contact areas above the patch are refused before the run, with the likely cause."""
 
-import subprocess
-import sys
 from pathlib import Path
 from typing import Any
 from unittest.mock import patch
@@ -9,6 +7,7 @@ from unittest.mock import patch
 import numpy as np
 import pytest
 import tomli_w
+from command import roughmdr
 from scenes import SCENE, ensemble, scene
 
 import roughmdr as rm
@@ -29,8 +28,7 @@ def test_a_run_with_more_contact_than_patch_is_refused_before_anything_is_writte
 ) -> None:
     file = tmp_path / "scene.toml"
     file.write_text(tomli_w.dumps(scene(**changes)))
-    command = [sys.executable, "-m", "roughmdr", "run", str(file), "-o", str(tmp_path / "out.nc")]
-    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    done = roughmdr("run", file, "-o", tmp_path / "out.nc", cwd=tmp_path)
     assert done.returncode == 2
     assert cause in done.stderr
     assert "runs" not in done.stderr  # no progress: nothing was run
@@ -47,19 +45,19 @@ def test_of_a_large_sweep_some_cells_are_checked_and_the_others_fail_with_the_re
     """So that the check does not take longer than small runs themselves."""
     modulus = np.geomspace(3e6, 9e6, 250).tolist()
     sweep = {"mode": "zip", "material.modulus": modulus}
-    asperities = {**SCENE["asperities"], "count": 20}
+    few = {"asperities": {**SCENE["asperities"], "count": 20}, "path": {"separation": ["2 um", "0 um"]}, "batch": {}}
     with patch.object(foresee, "_reason", wraps=foresee._reason) as checked:
-        rm.run(scene(sweep=sweep, asperities=asperities))
+        rm.run(scene(sweep=sweep, **few))
     assert checked.call_count == 100
     modulus[1] = 3.0
     with pytest.warns(UserWarning, match="failed"):
-        made = rm.run(scene(sweep=sweep, asperities=asperities))
+        made = rm.run(scene(sweep=sweep, **few))
     failed = (made.status == 1).any("realization")
     assert np.flatnonzero(failed).tolist() == [1]
     assert "summed contact area" in str(made.remark.values[1][0])
     modulus[-1] = 3.0
     with pytest.raises(rm.OutOfRange, match=r"modulus = 3.*1 of 100 cells"):
-        rm.run(scene(sweep=sweep, asperities=asperities))
+        rm.run(scene(sweep=sweep, **few))
 
 
 def givens(**changes: float) -> Givens:

@@ -7,6 +7,7 @@ import subprocess
 import sys
 from pathlib import Path
 
+import numba
 import pytest
 import tomli_w
 from scenes import scene
@@ -50,6 +51,7 @@ def replace(file: Path, old: str, new: str) -> None:
     file.write_text(text.replace(old, new, 1))
 
 
+@pytest.mark.skipif(numba.config.DISABLE_JIT, reason="processes of its own compile")
 def test_only_what_decides_numbers_costs_what_was_compiled_and_computed(tmp_path: Path) -> None:
     package = tmp_path / "copy" / "roughmdr"
     shutil.copytree(PACKAGE, package, ignore=shutil.ignore_patterns("__pycache__"))

@@ -4,7 +4,6 @@ import sys
 import threading
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
-from pathlib import Path
 from types import FunctionType, ModuleType
 from typing import Any
 
@@ -12,7 +11,6 @@ import numba
 import pytest
 
 from roughmdr.numerics.jit import as_argument, njit, once, specialise
-from roughmdr.numerics.vector_math import expm1
 
 
 class _Law(ModuleType):
@@ -94,27 +92,6 @@ def test_a_function_is_compiled_for_python_only_if_that_calls_it() -> None:
     assert not _overloads(kernel)
     assert kernel(1.5) == 3.0
     assert len(_overloads(kernel)) == (0 if numba.config.DISABLE_JIT else 1)  # type: ignore[attr-defined]
-
-
-def test_threads_that_compile_at_once_keep_the_folder_of_the_cache(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """numba's setting of it is one for the whole process."""
-    monkeypatch.chdir(tmp_path)
-    before, interval = numba.config.CACHE_DIR, sys.getswitchinterval()  # type: ignore[attr-defined]
-    sys.setswitchinterval(1e-7)
-
-    def compile_many(_: int) -> None:
-        for _ in range(100):
-            njit(FunctionType(expm1.__code__, expm1.__globals__, "expm1"))
-
-    try:
-        with ThreadPoolExecutor(4) as threads:
-            list(threads.map(compile_many, range(4)))
-    finally:
-        sys.setswitchinterval(interval)
-    assert before == numba.config.CACHE_DIR  # type: ignore[attr-defined]
-    assert not list(tmp_path.iterdir())
 
 
 def in_threads(make: Callable[[int], Any], count: int = 8) -> list[Any]:

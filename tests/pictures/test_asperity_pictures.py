@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from forms import large
 from scenes import scene
 
 import roughmdr as rm
@@ -131,7 +132,7 @@ def test_one_of_a_pair_is_drawn_with_its_radius_among_others() -> None:
     assert "among its neighbours" in draw_asperity(Labelled.of(rm.run(coupled))).get_suptitle()
 
 
-@pytest.mark.parametrize("kind", ["png", "svg", "pdf"])
+@pytest.mark.parametrize("kind", [large("png"), "svg", large("pdf")])
 def test_an_asperity_is_written_alike_each_time(tmp_path: Path, kind: str) -> None:
     contact, force = contact_of(*CASES["paraboloid, JKR"])
     written = []

@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 import pytest
 import xarray as xr
+from forms import large
 from matplotlib.collections import EllipseCollection
 from matplotlib.figure import Figure
 from scenes import scene
@@ -158,7 +159,7 @@ def test_a_height_map_lies_below_its_contacts(tmp_path: Path) -> None:
     assert (heights[rows, columns] > 0.8 * heights.max()).all()
 
 
-@pytest.mark.parametrize("kind", ["png", "svg", "pdf"])
+@pytest.mark.parametrize("kind", [large("png"), "svg", large("pdf")])
 def test_a_map_is_written_alike_each_time(sticky: Labelled, tmp_path: Path, kind: str) -> None:
     written = []
     for name in ("one", "two"):
@@ -167,6 +168,7 @@ def test_a_map_is_written_alike_each_time(sticky: Labelled, tmp_path: Path, kind
     assert written[0] == written[1]
 
 
+@pytest.mark.large
 def test_a_result_by_boundary_elements_is_said_to_be_one() -> None:
     coupled = {"model": "pairwise", "beyond": "boundary_elements"}
     crowd = asperities(count=40, patch="0.1 mm")

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from forms import large
 from matplotlib.axes import Axes
 from scenes import scene
 
@@ -109,7 +110,7 @@ def test_results_without_realisations_are_refused(changes: dict[str, Any], messa
         draw_convergence(result(**changes))
 
 
-@pytest.mark.parametrize("kind", ["png", "svg", "pdf"])
+@pytest.mark.parametrize("kind", [large("png"), "svg", large("pdf")])
 def test_convergence_is_written_alike_each_time(sixteen: Labelled, tmp_path: Path, kind: str) -> None:
     written = []
     for name in ("one", "two"):

@@ -60,6 +60,7 @@ def test_two_keys_are_a_colour_map_of_each_cell(two: xr.Dataset) -> None:
     np.testing.assert_array_equal(other.axes[0].collections[0].get_array(), values.T)
 
 
+@pytest.mark.large
 def test_three_keys_are_panels_with_one_colour_bar() -> None:
     made = swept({"adhesion.work": WORK, "asperities.height.std": STD, "asperities.radius.mean": RADIUS}, 2)
     figure = rm.plot(made, log=False)

@@ -18,6 +18,7 @@ def studied(tmp_path_factory: pytest.TempPathFactory) -> Iterator[CarriedOut]:
         yield made
 
 
+@pytest.mark.large
 @pytest.mark.parametrize("name", ["hills", "hills in pairs"])
 def test_hills_pull_off_nearer_to_elements_than_summits(studied: CarriedOut, name: str) -> None:
     """They are 0 to 9 % off, summits 4 to 19 %; the grid of the quick form itself 3 to 4 %."""
@@ -28,6 +29,7 @@ def test_hills_pull_off_nearer_to_elements_than_summits(studied: CarriedOut, nam
         assert off < abs(judge(case, "summits").pull_off - 1.0)
 
 
+@pytest.mark.large
 def test_unloading_is_nearer_than_loading_where_contacts_jump_on(studied: CarriedOut) -> None:
     """Attraction of finite range makes contacts jump on earlier than JKR; once they are made the range matters less."""
     for i in range(studied.result.sizes["case"]):
@@ -36,18 +38,21 @@ def test_unloading_is_nearer_than_loading_where_contacts_jump_on(studied: Carrie
         assert found.unloading < 0.5 * found.loading
 
 
+@pytest.mark.large
 def test_all_begin_and_end_apart(studied: CarriedOut) -> None:
     for name in METHODS:
         force = studied.result["force"].sel(source=name)
         np.testing.assert_array_equal(force.isel(step=[0, -1]), 0.0)
 
 
+@pytest.mark.large
 def test_it_reports_each_method_and_draws(studied: CarriedOut) -> None:
     for method in METHODS:
         assert f"| {method} |" in studied.text
     assert (Path(studied.folder) / "adhesive_hills.png").stat().st_size > 5000
 
 
+@pytest.mark.large
 def test_the_stated_error_bounds_the_largest_of_either_set(studied: CarriedOut) -> None:
     """Which jumps are made too late is most of it: without contact by JKR the force is off by a pull-off force."""
     result = studied.result

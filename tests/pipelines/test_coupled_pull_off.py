@@ -44,17 +44,20 @@ def test_the_scales_are_those_of_a_contact_alone() -> None:
     assert float(made.contact_radius) == pytest.approx(JUMP_ON_RADIUS, rel=1e-9)
 
 
+@pytest.mark.large
 def test_every_unloading_ends_with_all_contacts_parted(result: xr.Dataset) -> None:
     assert np.isfinite(result["pull_off_force"]).all()
     assert (result["pull_off_force"] < 0.0).all()
     assert (result["dissipated_energy"] > 0.0).all()
 
 
+@pytest.mark.large
 def test_no_independent_surface_holds_more_than_its_contacts_one_by_one(result: xr.Dataset) -> None:
     alone = result.sel(model="independent")
     assert (-alone["pull_off_force"] <= alone["pull_off_contacts"] * PULL_OFF_FORCE * (1.0 + 1e-9)).all()
 
 
+@pytest.mark.large
 def test_independent_contacts_lose_as_much_as_each_one_alone(result: xr.Dataset) -> None:
     """Each contact that is made is parted: on its own way down and up it jumps twice, whatever its height."""
     once = cycle_of_one(Surface(1.0, 1, 1000.0).generate(0).assign(height=("asperity", [0.0])))
@@ -71,6 +74,7 @@ def cycle_of_one(ensemble: xr.Dataset) -> float:
     return float(law["dissipated_energy"][-1])
 
 
+@pytest.mark.large
 def test_independent_asperities_know_nothing_of_their_distance(result: xr.Dataset) -> None:
     """The heights are drawn on their own, so that they are equal at all distances."""
     alone = result["pull_off_force"].sel(model="independent")
@@ -89,6 +93,7 @@ def test_coupling_fades_with_the_distance() -> None:
     assert changes[2] < 0.2 * changes[1] < 0.04 * changes[0]
 
 
+@pytest.mark.large
 def test_the_pull_off_is_located_between_the_steps(result: xr.Dataset) -> None:
     assert float(result["refinement"]) < 1e-6
 
@@ -102,6 +107,7 @@ def test_nothing_is_gained_on_the_way(model: str) -> None:
     assert float(law["pull_off_force"]) <= float(law["force"].min())
 
 
+@pytest.mark.large
 def test_the_files_hold_all_surfaces(folder: Path, result: xr.Dataset) -> None:
     assert (folder / "coupled_pull_off.png").stat().st_size > 10_000
     rows = [line for line in (folder / "report.md").read_text().splitlines() if line.startswith("| ")]

@@ -33,6 +33,7 @@ def test_a_map_is_the_same_on_every_grid() -> None:
     np.testing.assert_allclose(case.height(8)[::2, ::2], case.height(4), atol=1e-12 * case.height(4).max())
 
 
+@pytest.mark.large
 def test_hills_are_better_than_summits(studied: CarriedOut) -> None:
     for own in groups(studied.result).values():
         for quantity in ("force", "stiffness"):
@@ -41,6 +42,7 @@ def test_hills_are_better_than_summits(studied: CarriedOut) -> None:
             assert hills < 0.7 * summits
 
 
+@pytest.mark.large
 def test_every_method_has_errors_of_every_quantity(studied: CarriedOut) -> None:
     for name, own in groups(studied.result).items():
         for quantity in QUANTITIES:
@@ -60,6 +62,7 @@ def test_stiffness_is_minus_the_slope_of_the_force() -> None:
         assert pressed.stiffness[0] == pytest.approx(slope, rel=0.3)
 
 
+@pytest.mark.large
 def test_theory_is_better_the_more_is_in_contact(studied: CarriedOut) -> None:
     errors = errors_of(groups(studied.result)["isotropic"])
     for name in PERSSON:
@@ -68,6 +71,7 @@ def test_theory_is_better_the_more_is_in_contact(studied: CarriedOut) -> None:
     assert rms(within(errors.sel(solver=next(iter(PERSSON))), (0.05, 0.2))) < 0.1
 
 
+@pytest.mark.large
 def test_the_error_falls_with_the_points_of_the_map(studied: CarriedOut) -> None:
     found = by_points(studied.result)
     for name in ("error", "lacking", "stated"):
@@ -79,6 +83,7 @@ def test_the_error_falls_with_the_points_of_the_map(studied: CarriedOut) -> None
     assert f"against {FINEST} points" in studied.text
 
 
+@pytest.mark.large
 def test_more_contact_radii_than_the_default_change_little(studied: CarriedOut) -> None:
     force, of_scales = studied.result["trial_force_by_scales"], by_scales(studied.result)
     assert list(of_scales["scales"].to_numpy()) == list(SCALES)
@@ -87,12 +92,14 @@ def test_more_contact_radii_than_the_default_change_little(studied: CarriedOut) 
     assert change[20] < 0.01
 
 
+@pytest.mark.large
 def test_noise_moves_hills_less_than_summits(studied: CarriedOut) -> None:
     moved = by_noise(studied.result)
     assert (moved.sel(asperities="hills") < 0.8 * moved.sel(asperities="summits in pairs")).all()
     assert (moved.diff("noise") > 0.0).all()
 
 
+@pytest.mark.large
 def test_it_reports_each_method_and_draws(studied: CarriedOut) -> None:
     for method in METHODS:
         assert f"| {method} |" in studied.text
@@ -100,6 +107,7 @@ def test_it_reports_each_method_and_draws(studied: CarriedOut) -> None:
         assert (Path(studied.folder) / f"{name}.png").stat().st_size > 5000
 
 
+@pytest.mark.large
 def test_the_elements_that_all_is_held_against_have_converged(studied: CarriedOut) -> None:
     elements = studied.result["trial_elements"]
     errors = elements.isel(grid=0) / elements.isel(grid=-1) - 1.0
@@ -107,6 +115,7 @@ def test_the_elements_that_all_is_held_against_have_converged(studied: CarriedOu
         assert 0.0 < rms(errors.sel(quantity=quantity)) < most, quantity
 
 
+@pytest.mark.large
 def test_it_says_that_measured_maps_are_left_out(studied: CarriedOut) -> None:
     assert FOLDER in studied.text
     assert "surface" not in studied.result.dims
@@ -125,6 +134,7 @@ def test_a_sphere_alone_on_a_half_space() -> None:
     assert elements.press(top + depth) == 0.0
 
 
+@pytest.mark.large
 @pytest.mark.skipif(not (SHARED / FILES[0]).exists(), reason="the measured surfaces are not here")
 def test_a_measured_map(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (tmp_path / FILES[0]).write_bytes((SHARED / FILES[0]).read_bytes())

@@ -15,7 +15,6 @@ from roughmdr.aggregate import compute
 from roughmdr.batch.plan import make_plan
 from roughmdr.variables import DEFAULT_VARIABLES
 
-pytestmark = pytest.mark.slow
 HERTZ = [name for name, options in SCENES.items() if not options.get("adhesive")]
 JKR = [name for name in SCENES if name not in HERTZ]
 ASPERITIES, RUNS, STEPS = 60, 300, 20  # of the quick form

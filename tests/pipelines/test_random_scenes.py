@@ -130,7 +130,7 @@ def test_returns_are_pairs_of_steps_at_the_same_separation() -> None:
     assert returns(np.array([2.0, 1.0, 3.0, 2.0])) == []
 
 
-@pytest.mark.slow
+@pytest.mark.large
 def test_any_scene_is_refused_or_right(tmp_path: Path) -> None:
     script = Path(__file__).parents[2] / "pipelines" / "random_scenes.py"
     done = subprocess.run(

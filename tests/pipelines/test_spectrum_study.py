@@ -17,6 +17,7 @@ def studied(tmp_path_factory: pytest.TempPathFactory) -> Iterator[CarriedOut]:
         yield made
 
 
+@pytest.mark.large
 def test_hills_are_nearest(studied: CarriedOut) -> None:
     off = np.abs(means(studied.result)[0])
     assert float(off.sel(solver="hills in pairs").max()) < 0.06
@@ -24,12 +25,14 @@ def test_hills_are_nearest(studied: CarriedOut) -> None:
         assert float(off.sel(solver="hills in pairs").mean()) < 0.5 * float(off.sel(solver=other).mean())
 
 
+@pytest.mark.large
 def test_differences_on_the_same_maps_have_small_errors(studied: CarriedOut) -> None:
     error = means(studied.result)[1]
     assert float(error.sel(solver="hills in pairs").max()) < 0.3 * float(error.sel(solver="nayak").min())
     assert np.isfinite(error.sel(solver=list(METHODS[:-1]))).all()
 
 
+@pytest.mark.large
 def test_it_reports_each_source_and_draws(studied: CarriedOut) -> None:
     for method in METHODS[:-1]:
         assert f"| {method} |" in studied.text

@@ -51,6 +51,7 @@ def result(folder: Path, told: str) -> xr.Dataset:
         return stored.load()
 
 
+@pytest.mark.large
 def test_nothing_is_wrong(result: xr.Dataset) -> None:
     assert int(result.answers.sel(outcome=WRONG).sum()) == 0, result.reason_text.to_numpy()
     assert float(result.excess.max()) <= 1.0
@@ -59,11 +60,13 @@ def test_nothing_is_wrong(result: xr.Dataset) -> None:
     assert float(result.answers.sel(outcome=RIGHT).sum() / asked.sum()) > 0.8
 
 
+@pytest.mark.large
 def test_refusals_have_known_reasons(result: xr.Dataset) -> None:
     for reason in result.reason_text.to_numpy():
         assert reason in KNOWN or reason.endswith(" is not representable"), reason
 
 
+@pytest.mark.large
 def test_few_equilibria_are_tried(result: xr.Dataset) -> None:
     jkr, dugdale = (result.tried.sel(counted_law=law).dropna("counted_case") for law in ("jkr", "dugdale"))
     assert jkr.size > 0
@@ -72,12 +75,14 @@ def test_few_equilibria_are_tried(result: xr.Dataset) -> None:
     assert float(dugdale.max()) <= AT_MOST
 
 
+@pytest.mark.large
 def test_changes_that_must_not_change_the_answer_do_not(result: xr.Dataset) -> None:
     failed = result.change_error > result.change_allowed
     assert not failed.any(), result.change_name.to_numpy()[failed]
     assert {"order", "two parts", "units", "asperities out of reach"} < set(result.change_name.to_numpy())
 
 
+@pytest.mark.large
 def test_the_study_is_told_and_drawn(result: xr.Dataset, told: str) -> None:
     assert "No answer is wrong." in told
     for law in result.law.to_numpy():

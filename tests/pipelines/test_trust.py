@@ -25,14 +25,12 @@ def studied(tmp_path_factory: pytest.TempPathFactory) -> Iterator[CarriedOut]:
         yield made
 
 
-@pytest.mark.slow
 def test_scenes_are_run_compared_drawn_and_reported(studied: CarriedOut) -> None:
     assert studied.result["name"].to_numpy().tolist() == list(QUICK)
     assert all(f"| {name}" in studied.text for name in QUICK)
     assert (studied.folder / "trust.png").stat().st_size > 5000
 
 
-@pytest.mark.slow
 def test_a_trap_is_refused_and_the_force_of_the_others_is_bounded(studied: CarriedOut) -> None:
     refused = studied.result["oracle"].to_numpy() == "none"
     assert refused.any()

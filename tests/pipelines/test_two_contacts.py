@@ -50,6 +50,7 @@ def test_an_unequal_pair_has_the_equal_one_as_its_limit() -> None:
     assert (one.force, two.area) == pytest.approx((alike.force, alike.area), rel=1e-10)
 
 
+@pytest.mark.large
 def test_the_work_of_an_unequal_pair_does_not_depend_on_the_path() -> None:
     """The force on either by the approach of the other is alike: dP1/d(delta2) = dP2/d(delta1)."""
     small, step = Indenter(2.0, 1.3, 0.4), 1e-4

@@ -20,14 +20,12 @@ def studied(tmp_path_factory: pytest.TempPathFactory) -> Iterator[CarriedOut]:
         yield made
 
 
-@pytest.mark.slow
 def test_every_case_is_compared_drawn_and_reported(studied: CarriedOut) -> None:
     assert studied.result.sizes["case"] == len(QUICK)
     assert all(f"| {name} |" in studied.text for name in ("random", "square", "map"))
     assert (studied.folder / "versus_bem.png").stat().st_size > 5000
 
 
-@pytest.mark.slow
 def test_independent_forces_are_too_low_by_more_than_the_grid_is_off(studied: CarriedOut) -> None:
     error, grid = errors(studied.result), grid_errors(studied.result)
     known = np.isfinite(error)
@@ -36,7 +34,6 @@ def test_independent_forces_are_too_low_by_more_than_the_grid_is_off(studied: Ca
     assert (grid[np.isfinite(grid)] < 0.1 * error[np.isfinite(grid)]).all()
 
 
-@pytest.mark.slow
 def test_the_estimate_bounds_most_errors_and_is_within_a_factor_of_3(studied: CarriedOut) -> None:
     error = errors(studied.result)
     known = np.isfinite(error)

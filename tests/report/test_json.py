@@ -14,8 +14,8 @@ import numpy as np
 import pytest
 import tomli_w
 from click.testing import CliRunner
+from command import ROUGHMDR
 from scenes import ASPERITIES, scene
-from test_cli import ROUGHMDR
 
 import roughmdr as rm
 from roughmdr.cli import main

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 import xarray as xr
 from click.testing import CliRunner, Result
+from forms import large
 from scenes import scene
 
 import roughmdr as rm
@@ -144,7 +145,7 @@ def test_a_map_with_gaps_has_moments_and_no_spectrum(folder: Path) -> None:
     assert "bush_gibson_thomas" in {line.label for line in found.lines}
 
 
-@pytest.mark.parametrize("adhesion", [None, {"model": "jkr", "work": 1e-3}])
+@pytest.mark.parametrize("adhesion", [None, large({"model": "jkr", "work": 1e-3})])
 def test_the_table_of_cutoffs(folder: Path, adhesion: dict[str, object] | None) -> None:
     table = of_map(adhesion=adhesion)
     done = command("generate", saved(table), "--cutoffs", "20 um,0.04 mm")

@@ -14,8 +14,9 @@ import tomli_w
 import xarray as xr
 from batches import CURVES, RUNS, Batch, assert_result, interrupted, kept, mounted, running, write_scene
 from click.testing import CliRunner
+from command import ROUGHMDR, roughmdr
+from forms import large
 from scenes import ASPERITIES, scene
-from test_cli import ROUGHMDR, roughmdr
 
 import roughmdr as rm
 from roughmdr.batch.resume.store import store_folder
@@ -95,6 +96,7 @@ def test_what_is_kept_is_found_by_way_of_a_link_and_without(
     assert names(target.parent) == ["real.nc"]
 
 
+@pytest.mark.large
 def test_a_link_and_what_it_leads_to_have_one_lock(folder: Path, curves: xr.Dataset) -> None:
     (folder / "out.nc").symlink_to("scratch/real.nc")
     (folder / "scratch").mkdir()
@@ -349,7 +351,7 @@ except RoughmdrError as error:
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="no limit of the address space can be relied on here")
-@pytest.mark.parametrize("megabytes", [1, 8, 30, 60, 75, 100])
+@pytest.mark.parametrize("megabytes", [*map(large, [1, 8, 30, 75, 100]), 60])
 def test_too_little_memory_is_said_before_a_file_is_written(tmp_path: Path, megabytes: int) -> None:
     done = subprocess.run(
         [sys.executable, "-c", _WRITE, "1000000", str(megabytes)],
@@ -395,7 +397,7 @@ def test_a_run_that_memory_cannot_hold_is_refused_before_it_computes(tmp_path: P
     assert names(tmp_path) == ["scene.toml"]
 
 
-@pytest.mark.parametrize("free", [0, 4_000, 20_000, 90_000, 1_000_000, 5_000_000])
+@pytest.mark.parametrize("free", [*map(large, [0, 4_000, 90_000, 1_000_000, 5_000_000]), 20_000])
 def test_a_disk_that_is_full_when_the_result_is_written_says_so(tmp_path: Path, free: int) -> None:
     """All is one task, of which nothing is kept."""
     path = {"separation": {"start": "4 sigma", "stop": "-0.5 sigma", "steps": 32_000}, "unload": True}
@@ -416,6 +418,7 @@ def test_a_disk_that_is_full_when_the_result_is_written_says_so(tmp_path: Path, 
         assert names(folder) == ["out.nc", "scene.toml"]
 
 
+@pytest.mark.large
 def test_a_disk_that_is_full_at_the_end_keeps_what_is_finished(tmp_path: Path) -> None:
     folder = tmp_path / "disk"
     with mounted(folder, "64m"):

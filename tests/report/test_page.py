@@ -9,6 +9,7 @@ from typing import Any
 
 import pytest
 from click.testing import CliRunner
+from forms import large
 from scenes import ASPERITIES, scene
 
 import roughmdr as rm
@@ -54,9 +55,16 @@ def written(tmp_path: Path, **changes: Any) -> tuple[Page, str]:
     "changes",
     [
         {},
-        {"sweep": {"adhesion.work": [0.01, 0.02, 0.05], "asperities.height.std": {"linspace": [1e-6, 2e-6], "num": 4}}},
+        large(
+            {
+                "sweep": {
+                    "adhesion.work": [0.01, 0.02, 0.05],
+                    "asperities.height.std": {"linspace": [1e-6, 2e-6], "num": 4},
+                }
+            }
+        ),
         {"output": {"variables": ["force"], "keep": "statistics"}},
-        {"batch": {"estimator": "expected"}},
+        large({"batch": {"estimator": "expected"}}),
         {"path": {"force": {"stop": "0.1 mN", "steps": 12}, "unload": True}},
     ],
     ids=["law", "sweep", "statistics", "expected", "dead load"],
@@ -77,6 +85,7 @@ def test_a_page_holds_all_of_it_and_needs_no_other_file(tmp_path: Path, changes:
     assert "prefers-color-scheme: dark" in text
 
 
+@pytest.mark.large
 def test_the_same_result_gives_the_same_page_which_is_replaced_and_nothing_else_is(tmp_path: Path) -> None:
     _, first = written(tmp_path)
     rm.write_report(tmp_path / "out.nc", tmp_path / "report.html")

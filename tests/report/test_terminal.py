@@ -10,9 +10,10 @@ from typing import Any
 import numpy as np
 import pytest
 from click.testing import CliRunner
+from command import ROUGHMDR
 from foreign import ODD, Content, Variable, content_of, control_characters
 from foreign_commands import OF_INPUT, OF_RESULT, RESULTS, all_failed, checked, filled, put, remarked
-from test_cli import ROUGHMDR
+from forms import large
 
 from roughmdr.cli import main
 
@@ -61,8 +62,10 @@ def test_nothing_in_a_file_reaches_a_terminal(folder: Path, name: str, failed: b
         assert "\\x1b[31m" in "".join(done.output for done in said)
 
 
-@pytest.mark.parametrize("every", [False, pytest.param(True, marks=pytest.mark.large)])
-@pytest.mark.parametrize("name", [*RESULTS, "ensemble", "table", "map"])
+@pytest.mark.parametrize("every", [False, large(True)])
+@pytest.mark.parametrize(
+    "name", ["curves", *(large(name) for name in RESULTS if name != "curves"), "ensemble", "table", "map"]
+)
 def test_nothing_in_what_is_refused_reaches_a_terminal(folder: Path, name: str, every: bool) -> None:
     """One word after the other is replaced: attributes, names of variables and dimensions, texts.
 

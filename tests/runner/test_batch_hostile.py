@@ -102,6 +102,7 @@ def test_a_file_that_looks_the_same_is_read_again(tmp_path: Path) -> None:
         rm.run(table, tmp_path / "out.nc")
 
 
+@pytest.mark.large
 def test_no_force_yet_is_no_small_error() -> None:
     """A summit that few realisations have: sixteen without it tell nothing of the mean."""
     rare = few(asperities={**FEW, "count": 1}, path={"separation": ["3 um", "2.6 um"]}, batch=None, adhesion=None)

@@ -29,6 +29,7 @@ from batches import (
     running,
     until,
 )
+from forms import large
 
 from roughmdr.batch.plan import make_plan
 from roughmdr.errors import RoughmdrError
@@ -90,7 +91,7 @@ def two(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Dask]:
         yield cluster
 
 
-@pytest.mark.parametrize("runs_per_task", [1, 7, 64])
+@pytest.mark.parametrize("runs_per_task", [large(1), 7, large(64)])
 @pytest.mark.parametrize("keep", ["curves", "statistics"])
 def test_the_same_bits_from_a_cluster(two: Dask, keep: str, runs_per_task: int, request: pytest.FixtureRequest) -> None:
     plan = make_plan(read(CURVES if keep == "curves" else STATISTICS))
@@ -103,7 +104,7 @@ def test_the_same_bits_from_a_cluster(two: Dask, keep: str, runs_per_task: int, 
 @pytest.mark.parametrize(
     ("scheduler", "workers"), [("threads", 1), ("threads", 2), ("threads", 3), ("processes", 2), ("processes", 3)]
 )
-@pytest.mark.parametrize(("keep", "runs_per_task"), [("curves", 7), ("statistics", 64), ("statistics", 1)])
+@pytest.mark.parametrize(("keep", "runs_per_task"), [("curves", 7), large("statistics", 64), large("statistics", 1)])
 def test_the_same_bits_from_threads_and_processes(
     scheduler: str, workers: int, keep: str, runs_per_task: int, request: pytest.FixtureRequest
 ) -> None:
@@ -140,6 +141,7 @@ def test_few_tasks_are_in_flight(two: Dask) -> None:
     assert max(seen) <= 2 * 2 + 1  # one that is done may not be forgotten yet
 
 
+@pytest.mark.large
 def test_an_interrupt_lets_the_tasks_in_flight_end(two: Dask, folder: Path, curves: xr.Dataset) -> None:
     with running(Batch(folder, "--scheduler", two.address)) as batch:
         batch.wait_for_lines(5)
@@ -156,7 +158,6 @@ def test_an_interrupt_lets_the_tasks_in_flight_end(two: Dask, folder: Path, curv
     assert_clean(folder)
 
 
-@pytest.mark.slow
 def test_workers_that_die_and_workers_that_come(tmp_path: Path, folder: Path, curves: xr.Dataset) -> None:
     """One of two dies: the other goes on. That one too: the batch waits. A new one comes: it goes on."""
     with dask(tmp_path, 2) as cluster, running(Batch(folder, "--scheduler", cluster.address)) as batch:
@@ -178,7 +179,7 @@ def test_workers_that_die_and_workers_that_come(tmp_path: Path, folder: Path, cu
     assert_clean(folder)
 
 
-@pytest.mark.slow
+@pytest.mark.large
 def test_without_workers_two_interrupts_end_it(tmp_path: Path, folder: Path) -> None:
     with dask(tmp_path, 0) as cluster, running(Batch(folder, "--scheduler", cluster.address)) as batch:
         until((folder / "out.nc.parts" / "manifest.jsonl").exists)
@@ -192,7 +193,7 @@ def test_without_workers_two_interrupts_end_it(tmp_path: Path, folder: Path) -> 
     assert_no_traceback(said)
 
 
-@pytest.mark.slow
+@pytest.mark.large
 def test_a_scheduler_that_dies_is_told_of_and_threads_go_on(tmp_path: Path, folder: Path, curves: xr.Dataset) -> None:
     with dask(tmp_path, 1) as cluster, running(Batch(folder, "--scheduler", cluster.address)) as batch:
         batch.wait_for_lines(5)
@@ -212,6 +213,7 @@ def test_a_scheduler_that_dies_is_told_of_and_threads_go_on(tmp_path: Path, fold
     assert_clean(folder)
 
 
+@pytest.mark.large
 def test_no_scheduler_there_is_said_at_once(folder: Path) -> None:
     with socket.socket() as unused:
         unused.bind(("127.0.0.1", 0))  # nobody listens
@@ -249,6 +251,7 @@ def test_a_server_that_is_no_scheduler_is_told(says: bytes | None, monkeypatch: 
         thread.join()
 
 
+@pytest.mark.large
 def test_a_run_over_a_cluster_does_not_listen(two: Dask, folder: Path) -> None:
     with running(Batch(folder, "--scheduler", two.address)) as batch:
         batch.wait_for_lines(2)
@@ -273,13 +276,24 @@ def certified(folder: Path) -> list[str]:
     return [text for option, name in names.items() for text in (f"--tls-{option}", str(folder / name))]
 
 
-@pytest.mark.slow
 @pytest.mark.skipif(shutil.which("openssl") is None, reason="openssl makes the certificates")
 def test_encrypted(tmp_path: Path, folder: Path, curves: xr.Dataset) -> None:
     options = certified(tmp_path)
     ca, *others = options
     with dask(tmp_path, 1, f"{ca}-file", *others, "--protocol", "tls") as cluster:
         assert cluster.address.startswith("tls://127.0.0.1:")
+        with running(Batch(folder, "--scheduler", cluster.address, *options)) as batch:
+            assert batch.succeed() == RUNS
+    assert_result(folder, curves)
+    assert_clean(folder)
+
+
+@pytest.mark.large
+@pytest.mark.skipif(shutil.which("openssl") is None, reason="openssl makes the certificates")
+def test_who_may_not_connect_is_told_why(tmp_path: Path, folder: Path) -> None:
+    options = certified(tmp_path)
+    ca, *others = options
+    with dask(tmp_path, 1, f"{ca}-file", *others, "--protocol", "tls") as cluster:
         without_key = [*options[:-1], str(tmp_path / "none.pem")]
         strangers = tmp_path / "strangers"
         strangers.mkdir()
@@ -299,7 +313,3 @@ def test_encrypted(tmp_path: Path, folder: Path, curves: xr.Dataset) -> None:
             status, said = batch.end()
         assert status == 2, said
         assert "--tls-ca, --tls-cert and --tls-key must be given together" in said
-        with running(Batch(folder, "--scheduler", cluster.address, *options)) as batch:
-            assert batch.succeed() == RUNS
-    assert_result(folder, curves)
-    assert_clean(folder)

@@ -32,6 +32,7 @@ from batches import (
     until,
     write_scene,
 )
+from forms import large
 
 import roughmdr as rm
 from roughmdr.batch.plan import make_plan
@@ -71,10 +72,7 @@ def resume(folder: Path, capsys: pytest.CaptureFixture[str], base: xr.Dataset) -
 # Killed
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize(
-    ("keep", "kills"), [("curves", 6), pytest.param("curves", 14, marks=pytest.mark.large), ("statistics", 6)]
-)
+@pytest.mark.parametrize(("keep", "kills"), [("curves", 3), large("curves", 14), large("statistics", 6)])
 def test_killed_again_and_again_it_comes_to_the_same_bits(
     tmp_path: Path, keep: str, kills: int, request: pytest.FixtureRequest
 ) -> None:
@@ -141,7 +139,7 @@ def test_parts_of_another_scene_outlive_a_result_that_is_there(
     assert 0 < resume(left, capsys, curves) < RUNS
 
 
-@pytest.mark.parametrize("runs_per_task", [8, RUNS])
+@pytest.mark.parametrize("runs_per_task", [8, large(RUNS)])
 def test_killed_while_the_result_is_half_written(
     folder: Path, curves: xr.Dataset, capsys: pytest.CaptureFixture[str], runs_per_task: int
 ) -> None:
@@ -165,7 +163,12 @@ netCDF4.Dataset.__exit__ = sync
 
 @pytest.mark.parametrize(
     "damage",
-    ["torn line", "odd lines", "no first line", "file", "no file", "every file", "nothing left", "leftovers"],
+    [
+        "torn line",
+        *map(large, ["odd lines", "no first line", "file", "no file", "every file"]),
+        "nothing left",
+        "leftovers",
+    ],
 )
 def test_only_what_is_damaged_is_computed_again(
     left: Path, curves: xr.Dataset, capsys: pytest.CaptureFixture[str], damage: str
@@ -207,7 +210,11 @@ def test_only_what_is_damaged_is_computed_again(
 
 @pytest.mark.parametrize(
     ("number", "scheduler", "group"),
-    [(signal.SIGTERM, "threads", False), (signal.SIGINT, "threads", True), (signal.SIGINT, "processes", True)],
+    [
+        large(signal.SIGTERM, "threads", False),
+        (signal.SIGINT, "threads", True),
+        large(signal.SIGINT, "processes", True),
+    ],
 )
 def test_interrupted_it_ends_what_it_began_and_says_what_is_kept(
     folder: Path, curves: xr.Dataset, capsys: pytest.CaptureFixture[str], number: int, scheduler: str, group: bool
@@ -225,7 +232,7 @@ def test_interrupted_it_ends_what_it_began_and_says_what_is_kept(
     assert resume(folder, capsys, curves) == RUNS - done
 
 
-@pytest.mark.parametrize("scheduler", ["threads", "processes"])
+@pytest.mark.parametrize("scheduler", ["threads", large("processes")])
 def test_interrupted_twice_it_ends_at_once(folder: Path, capsys: pytest.CaptureFixture[str], scheduler: str) -> None:
     """Its runs would take minutes."""
     endless = slow_scene(64, count=20_000_000)
@@ -248,7 +255,7 @@ def test_interrupted_twice_it_ends_at_once(folder: Path, capsys: pytest.CaptureF
     assert [path.name for path in folder.iterdir()] == ["scene.toml"]
 
 
-@pytest.mark.parametrize("delay", [0.0, 0.3, 0.8])
+@pytest.mark.parametrize("delay", [large(0.0), 0.3, large(0.8)])
 def test_an_interrupt_while_worker_processes_start(folder: Path, delay: float) -> None:
     with running(Batch(folder, "--scheduler", "processes")) as batch:
         until(lambda: len(batch.children()) > 0)
@@ -260,6 +267,7 @@ def test_an_interrupt_while_worker_processes_start(folder: Path, delay: float) -
     assert_no_traceback(said)
 
 
+@pytest.mark.large
 def test_an_interrupt_while_the_result_is_written_lets_it_be_written(folder: Path, curves: xr.Dataset) -> None:
     slowly = """
 import os, signal
@@ -288,6 +296,7 @@ def gone(processes: list[psutil.Process]) -> None:
     until(lambda: all(map(is_gone, processes)), 10.0)
 
 
+@pytest.mark.large
 def test_a_worker_process_that_is_killed_is_replaced(folder: Path, curves: xr.Dataset) -> None:
     with running(Batch(folder, "--scheduler", "processes")) as batch:
         batch.wait_for_lines(5)
@@ -300,6 +309,7 @@ def test_a_worker_process_that_is_killed_is_replaced(folder: Path, curves: xr.Da
     assert_clean(folder)
 
 
+@pytest.mark.large
 def test_no_worker_process_outlives_a_killed_batch(folder: Path) -> None:
     with running(Batch(folder, "--scheduler", "processes")) as batch:
         batch.wait_for_lines(2)
@@ -309,7 +319,7 @@ def test_no_worker_process_outlives_a_killed_batch(folder: Path) -> None:
         gone(workers)
 
 
-@pytest.mark.slow
+@pytest.mark.large
 def test_a_run_whose_process_always_dies_has_failed_and_the_others_are_done(folder: Path) -> None:
     """A system out of memory kills whatever takes too much; here the test does it in its place."""
     counts = [100, 200, 6_000_000, 300, 400]
@@ -339,6 +349,7 @@ def test_a_run_whose_process_always_dies_has_failed_and_the_others_are_done(fold
 # Runs that fail
 
 
+@pytest.mark.large
 def test_a_cell_that_cannot_be_computed_stands_alone(folder: Path) -> None:
     swept = slow_scene(12, count=1000, sweep={"asperities.radius": ["1e-300 m", "20 um", "50 um"]})
     write_scene(folder, swept)
@@ -359,6 +370,7 @@ def test_a_cell_that_cannot_be_computed_stands_alone(folder: Path) -> None:
     assert result.force.values[1:].tobytes() == good.force.values.tobytes()
 
 
+@pytest.mark.large
 def test_a_failure_that_has_gone_away_is_repaired(folder: Path, curves: xr.Dataset) -> None:
     short_of_memory = """
 import roughmdr.batch.tasks as tasks
@@ -396,6 +408,7 @@ def test_where_no_run_can_be_computed_the_first_says_why(folder: Path) -> None:
 # Disks and folders
 
 
+@pytest.mark.large
 def test_a_full_disk_keeps_what_fits_and_more_room_is_all_it_takes(tmp_path: Path) -> None:
     everything = ["force", "contact_area", "contact_count", "stiffness", "pressure", "energy", "contact_radius_sum"]
     steps = {"separation": {"start": "3 sigma", "stop": "-0.5 sigma", "steps": 1000}, "unload": True}
@@ -441,7 +454,7 @@ def test_a_folder_that_cannot_be_written_is_found_before_computing(tmp_path: Pat
         assert_no_traceback(said)
 
 
-@pytest.mark.parametrize("target", ["scene.toml/out.nc", "none/out.nc"])
+@pytest.mark.parametrize("target", ["scene.toml/out.nc", large("none/out.nc")])
 def test_a_folder_that_is_none_is_found_before_computing(folder: Path, target: str) -> None:
     with running(Batch(folder, "-o", target)) as batch:
         status, said = batch.end()
@@ -459,7 +472,7 @@ def remove(folder: Path) -> None:
     until(is_removed)
 
 
-@pytest.mark.parametrize("what", ["", "out.nc.parts"])
+@pytest.mark.parametrize("what", ["", large("out.nc.parts")])
 def test_a_folder_that_vanishes_is_told_of(folder: Path, curves: xr.Dataset, what: str) -> None:
     with running(Batch(folder)) as batch:
         batch.wait_for_lines(3)
@@ -494,7 +507,7 @@ def test_two_batches_do_not_write_one_result(folder: Path, curves: xr.Dataset) -
     assert_clean(folder)
 
 
-@pytest.mark.parametrize("scheduler", ["threads", "processes"])
+@pytest.mark.parametrize("scheduler", [*map(large, ["threads", "processes"])])
 def test_nothing_listens(folder: Path, scheduler: str) -> None:
     with running(Batch(folder, "--scheduler", scheduler)) as batch:
         batch.wait_for_lines(2)

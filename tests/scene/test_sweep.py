@@ -42,6 +42,7 @@ def assert_cell(cell: xr.Dataset, alone: xr.Dataset) -> None:
     assert cell.branch.to_numpy().tolist() == alone.branch.to_numpy().tolist()
 
 
+@pytest.mark.large
 def test_a_product_of_three_by_five_by_thirty_two(tmp_path: Path) -> None:
     table = swept(
         {

@@ -11,6 +11,7 @@ import xarray as xr
 from click.testing import CliRunner
 from foreign import undefined
 from foreign_commands import RESULTS
+from forms import large
 from measurements import CASES, noise_of
 from scenes import ASPERITIES, CONDUCTION, scene
 
@@ -134,7 +135,7 @@ def read(data: Labelled, of: Callable[[Labelled], Labelled], readers: dict[str, 
             assert not undefined(said), (change, name)
 
 
-@pytest.mark.parametrize("name", [*SCENES, *(pytest.param(name, marks=pytest.mark.large) for name in LARGE)])
+@pytest.mark.parametrize("name", ["curves", *(large(name) for name in SCENES | LARGE if name != "curves")])
 def test_every_array_and_attribute_in_turn(name: str) -> None:
     data = made(name)
     assert as_result(data) == data

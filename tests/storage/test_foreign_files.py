@@ -14,7 +14,7 @@ from foreign_commands import OF_INPUT, OF_RESULT, RESULTS, all_failed, checked, 
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-EXAMPLES = int(os.environ.get("ROUGHMDR_EXAMPLES", "60"))
+EXAMPLES = int(os.environ.get("ROUGHMDR_EXAMPLES", "20"))
 
 
 @pytest.fixture(scope="module")

@@ -11,6 +11,7 @@ import netCDF4
 import pytest
 import tomli_w
 import xarray as xr
+from forms import large
 from scenes import ASPERITIES, scene
 
 import roughmdr as rm
@@ -118,7 +119,7 @@ while True:
 """
 
 
-@pytest.mark.parametrize("pause", [0.0, 0.011, 0.023, 0.037, 0.053])
+@pytest.mark.parametrize("pause", [*map(large, [0.0, 0.011, 0.037, 0.053]), 0.023])
 def test_a_killed_run_leaves_a_whole_file_or_none(tmp_path: Path, pause: float) -> None:
     """Killed at once, at some moment of the second or third writing; what bears the name must be whole."""
     target = tmp_path / "out.nc"

@@ -9,6 +9,7 @@ from typing import Any, NamedTuple
 import mpmath
 import numpy as np
 import pytest
+from forms import large_where_compiled
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
@@ -292,6 +293,7 @@ def test_far_away_the_contact_is_a_force(name: str, work: float) -> None:
     assert float(deep.sigma_zz) == pytest.approx(expected, rel=1e-12)
 
 
+@large_where_compiled
 @every_work
 @pytest.mark.parametrize("unit", [2.0**-30, 2.0**30])
 def test_the_unit_of_length_does_not_matter(work: float, unit: float) -> None:
@@ -352,6 +354,7 @@ def test_the_largest_shear_is_the_largest_of_all_depths(nu: float, work: float) 
             assert seen >= float(found.largest_shear) * (1.0 - 3e-3)
 
 
+@large_where_compiled
 def test_the_shear_below_a_sharp_tip_has_no_largest_value() -> None:
     for shape in (rm.Cone(slope=0.1), SHAPES["blunt power_law"][0], SHAPES["power_series"][0], SHAPES["tabulated"][0]):
         found = rm.axis_stress(shape, z=[1e-9, 1e-90], contact_radius=A, effective_modulus=E, poisson=NU)
@@ -359,6 +362,7 @@ def test_the_shear_below_a_sharp_tip_has_no_largest_value() -> None:
         assert found.shear[1] > found.shear[0]
 
 
+@large_where_compiled
 def test_out_of_contact_nothing_is_pressed() -> None:
     for shape, _ in SHAPES.values():
         for control in ({"indentation": -1e-6}, {"indentation": -1e-6, "work": WORK}, {"contact_radius": 0.0}):

@@ -1,0 +1,18 @@
+"""Tests, and cases of tests, that are long forms, which ``make test-all`` runs."""
+
+from collections.abc import Callable
+from typing import Any
+
+import numba
+import pytest
+from _pytest.mark import ParameterSet
+
+
+def large(*values: object) -> ParameterSet:
+    """Return the values of one case, marked as a long form."""
+    return pytest.param(*values, marks=pytest.mark.large)
+
+
+def large_where_compiled(test: Callable[..., Any]) -> Callable[..., Any]:
+    """Return a test that runs at once where nothing is compiled, and is a long form where functions are."""
+    return test if numba.config.DISABLE_JIT else pytest.mark.large(test)
