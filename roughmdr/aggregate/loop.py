@@ -204,7 +204,7 @@ def compiled_sum(kernels: Kernels, *, energetic: bool) -> SumKernels:
         "jumps_between_branches": jumps_between_branches,
         "add_totals": add_totals,
     }
-    if kernels.of_any is None and "find_all" not in vars(kernels):
+    if "find_all" not in vars(kernels):
         parts |= {"find_all": find_near if kernels.found_near else find_by_steps, "evaluate_all": evaluate_all}
     for name, part in parts.items():
         of_one = name in _OF_ONE_CONTACT

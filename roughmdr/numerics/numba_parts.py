@@ -1,4 +1,4 @@
-"""What roughmdr uses of numba beside its public face, all in one place: a change of numba can break only this.
+"""Parts of numba that are not its public face, but those of its cache and events: a change of numba can break them.
 
 Functions of one type behind one name: compiled code calls them by addresses, to which its last argument leads, and is
 compiled once for all of them. A row of numbers, or the first of several, holds the address of a table of addresses. A
@@ -53,7 +53,7 @@ class Addressed:
 
 
 def address_of(function: Callable[..., Any], signature: str) -> int:
-    """Return the address of a function of ``njit``, to be called as numba calls; TypeError unless it has that type."""
+    """Return the address of a function of ``njit`` for compiled code to call; TypeError unless it is of that type."""
     (taken, returned), bare = _parsed(signature), cast(Any, function).bare()
     bare.compile(taken)
     compiled = bare.overloads[taken]

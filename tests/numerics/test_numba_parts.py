@@ -13,7 +13,7 @@ from roughmdr.numerics.jit import UNCOMPILED, njit
 USED = [
     (dispatcher.Dispatcher, "get_call_template", "functions of njit have a form without a wrapper for Python"),
     (dispatcher.Dispatcher, "get_overload", "functions of njit have a form without a wrapper for Python"),
-    (codegen.CPUCodeLibrary, "get_pointer_to_function", "functions are called by address"),
+    (codegen.JITCodeLibrary, "get_pointer_to_function", "functions are called by address"),
     (callconv.CPUCallConv, "get_function_type", "functions are called by address"),
     (callconv.CPUCallConv, "call_function", "functions are called by address"),
     (callconv.CPUCallConv, "return_status_propagate", "an exception in a function that is called by address is raised"),
