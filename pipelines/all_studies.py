@@ -4,9 +4,10 @@ import subprocess
 import sys
 import time
 from pathlib import Path
+from typing import NamedTuple
 
 import click
-from studies.study import OUTPUT, QUICK
+from studies.study import OUTPUT, QUICK, REDUCED, table
 
 from roughmdr.storage.files import replace_atomically
 
@@ -16,31 +17,56 @@ NAMES = (
 )  # fmt: skip
 
 
+class Done(NamedTuple):
+    """A study that has been run."""
+
+    name: str
+    seconds: float
+    text: str
+    """What it printed; nothing where it failed."""
+
+    @property
+    def row(self) -> list[str]:
+        """Its row in the table at the head of the report."""
+        reduced = [line.removeprefix(REDUCED) for line in self.text.splitlines() if line.startswith(REDUCED)]
+        return [self.name, f"{self.seconds:.0f}", "".join(reduced) or ("all" if self.text else "failed")]
+
+    @property
+    def part(self) -> str:
+        """Its part of the report."""
+        return f"{self.text}\n![{self.name}]({self.name}.png)\n" if self.text else f"## {self.name}\n\nfailed\n"
+
+
+def run(name: str, output: Path, quick: bool) -> Done:
+    """Run a study in a process of its own."""
+    command = [sys.executable, str(Path(__file__).with_name(f"{name}.py")), "-o", str(output), *["--quick"] * quick]
+    started = time.perf_counter()
+    done = subprocess.run(command, stdout=subprocess.PIPE, text=True, check=False)
+    return Done(name, time.perf_counter() - started, "" if done.returncode else done.stdout)
+
+
+def report(done: list[Done], quick: bool) -> str:
+    """Return the time of each study and what it has of its full form, and then what each study found."""
+    form = "in reduced forms; `make studies-full` carries out all of each" if quick else "in full"
+    head = f"# Results of the studies\n\n{sum(one.seconds for one in done):.0f} s, {form}.\n"
+    times = f"{table(['study', 's', 'carried out'], [one.row for one in done])}\n"
+    return "\n".join([head, times, *(one.part for one in done)])
+
+
 @click.command(help=__doc__)
 @OUTPUT
 @QUICK
 def main(output: Path, quick: bool) -> None:
-    """Write NAME.nc and NAME.png of each study, run in a process of its own, and report.md after each.
-
-    Go on where one fails.
-    """
+    """Write NAME.nc and NAME.png of each study, and report.md after each; go on where one fails."""
     output.mkdir(parents=True, exist_ok=True)
-    forms = "Reduced forms; `make studies-full` carries out all of each study.\n" if quick else ""
-    parts, failed = [f"# Results of the studies\n\n{forms}"], list[str]()
+    done = list[Done]()
     for name in NAMES:
-        started = time.perf_counter()
-        command = [sys.executable, str(Path(__file__).with_name(f"{name}.py")), "-o", str(output)]
-        done = subprocess.run([*command, *["--quick"] * quick], stdout=subprocess.PIPE, text=True, check=False)
-        took = f"{name}: {time.perf_counter() - started:.0f} s"
-        click.echo(took, err=True)
-        if done.returncode:
-            failed.append(name)
-        parts.append(
-            f"## {name}\n\nfailed\n" if done.returncode else f"{done.stdout}\n{took}\n\n![{name}]({name}.png)\n"
-        )
+        done.append(run(name, output, quick))
+        click.echo(f"{name}: {done[-1].seconds:.0f} s", err=True)
         with replace_atomically(output / "report.md") as temporary:
-            temporary.write_text("\n".join(parts))
+            temporary.write_text(report(done, quick))
     click.echo(output / "report.md")
+    failed = [one.name for one in done if not one.text]
     if failed:
         raise click.ClickException(f"failed: {', '.join(failed)}")
 

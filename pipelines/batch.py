@@ -6,7 +6,14 @@ python pipelines/batch.py -o results/studies
 from benchmarks.batch import draw, measure, report
 from studies.study import Study
 
-STUDY = Study("batch", "What the batch engine costs", measure, draw, report)
+STUDY = Study(
+    "batch",
+    "What the batch engine costs",
+    measure,
+    draw,
+    report,
+    "few cells, tasks, asperities and realisations, each timed once",
+)
 
 if __name__ == "__main__":
     STUDY.command()

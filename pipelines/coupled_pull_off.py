@@ -1,6 +1,6 @@
 """Pull-off of sticky rough surfaces with asperities independent and coupled: python pipelines/coupled_pull_off.py."""
 
-from studies.coupled_pull_off.measure import REALIZATIONS, USUAL, measure
+from studies.coupled_pull_off.measure import COUNTS, DISTANCES, REALIZATIONS, SPREADS, USUAL, measure
 from studies.coupled_pull_off.report import draw, report
 from studies.study import Study
 
@@ -10,8 +10,11 @@ STUDY = Study(
     measure,
     draw,
     report,
-    f"{USUAL[True][0]} of {USUAL[False][0]} asperities, {REALIZATIONS[True]} of {REALIZATIONS[False]} realisations, "
-    "fewer distances",
+    f"{USUAL[True][0]} in place of {USUAL[False][0]} asperities, "
+    f"at most {USUAL[True][0]} in place of {max(COUNTS[False])}; "
+    f"{len(DISTANCES[True])} of {len(DISTANCES[False])} distances, "
+    f"{len(SPREADS[True])} of {len(SPREADS[False])} spreads of heights, "
+    f"{REALIZATIONS[True]} of {REALIZATIONS[False]} realisations",
 )
 
 if __name__ == "__main__":

@@ -1,5 +1,6 @@
 """Summits and hills of maps against boundary elements: python pipelines/hills.py."""
 
+from studies.hills.convergence import QUICK_TRIALS, TRIALS
 from studies.hills.draw import draw, draw_convergence
 from studies.hills.maps import ANISOTROPIC, ISOTROPIC, QUICK
 from studies.hills.measure import measure
@@ -12,7 +13,9 @@ STUDY = Study(
     measure,
     {"hills": draw, "hills_convergence": draw_convergence},
     report,
-    f"{len(QUICK)} of {len(ISOTROPIC) + len(ANISOTROPIC)} maps, smaller pieces of measured ones",
+    f"{len(QUICK)} of {len(ISOTROPIC) + len(ANISOTROPIC)} maps; convergence on "
+    f"{len(QUICK_TRIALS)} smaller maps in place of {len(TRIALS)}, with elements half as fine; "
+    "smaller pieces of measured maps",
 )
 
 if __name__ == "__main__":

@@ -3,11 +3,16 @@
 python pipelines/left_out.py -o results/studies
 """
 
-from studies.left_out import draw, measure, report
+from studies.left_out import ASPERITIES, RUNS, draw, measure, report
 from studies.study import Study
 
 STUDY = Study(
-    "left_out", "What leaving out saves", measure, draw, report, "calls of 60 of 400 steps, 300 of 3000 realisations"
+    "left_out",
+    "What leaving out saves",
+    measure,
+    draw,
+    report,
+    f"{ASPERITIES[True]} of {ASPERITIES[False]} asperities, {RUNS[True]} of {RUNS[False]} realisations",
 )
 
 if __name__ == "__main__":

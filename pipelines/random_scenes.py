@@ -1,6 +1,6 @@
 """Scenes drawn at random, each refused in words or physically right: python pipelines/random_scenes.py."""
 
-from studies.random_scenes.measure import FULL, QUICK, measure
+from studies.random_scenes.measure import FULL, QUICK, QUICK_COHESIVE, measure
 from studies.random_scenes.report import draw, report
 from studies.study import Study
 
@@ -10,7 +10,7 @@ STUDY = Study(
     measure,
     draw,
     report,
-    f"{QUICK} of {FULL} scenes, adhesion of finite range on two shapes",
+    f"{QUICK} of {FULL} scenes; adhesion of finite range on the shapes {' and '.join(QUICK_COHESIVE)} alone",
 )
 
 if __name__ == "__main__":

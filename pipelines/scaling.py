@@ -3,10 +3,17 @@
 python pipelines/scaling.py -o results/studies
 """
 
-from benchmarks.scaling import draw, measure, report
+from benchmarks.scaling import ASPERITIES, draw, measure, report
 from studies.study import Study
 
-STUDY = Study("scaling", "What the sum costs", measure, draw, report)
+STUDY = Study(
+    "scaling",
+    "What the sum costs",
+    measure,
+    draw,
+    report,
+    f"up to {ASPERITIES[True]} of {ASPERITIES[False]} asperities, each timed once",
+)
 
 if __name__ == "__main__":
     STUDY.command()

@@ -1,6 +1,9 @@
 """Stability: is every answer right, or refused for a reason? python pipelines/stability.py -o results/studies."""
 
-from studies.stability.measure import FULL, QUICK, measure
+from studies.stability.crowding import crowds
+from studies.stability.measure import COUNTED, COUNTED_QUICKLY, FULL, QUICK, measure
+from studies.stability.metamorphic import KINDS
+from studies.stability.metamorphic import QUICK as QUICK_KINDS
 from studies.stability.report import draw, report
 from studies.study import Study
 
@@ -10,7 +13,9 @@ STUDY = Study(
     measure,
     draw,
     report,
-    f"{sum(QUICK.values())} of {sum(FULL.values())} cases, three shapes, one crowd",
+    f"{sum(QUICK.values())} of {sum(FULL.values())} cases, "
+    f"equilibria counted in {COUNTED_QUICKLY} of {COUNTED}; changes of the problem on "
+    f"{len(QUICK_KINDS)} of {len(KINDS)} shapes; {len([*crowds(True)])} of {len([*crowds(False)])} crowds",
 )
 
 if __name__ == "__main__":

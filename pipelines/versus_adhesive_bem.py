@@ -10,7 +10,7 @@ STUDY = Study(
     measure,
     draw,
     report,
-    f"{len(QUICK)} of {len(CASES)} cases, on coarser grids",
+    f"{len(QUICK)} cases in place of {len(CASES)}, on coarser grids",
 )
 
 if __name__ == "__main__":

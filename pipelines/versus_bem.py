@@ -10,7 +10,7 @@ STUDY = Study(
     measure,
     draw,
     report,
-    f"{len(QUICK)} of {len(CASES)} cases, and smaller ones",
+    f"{len(QUICK)} smaller cases in place of {len(CASES)}, on coarser grids",
 )
 
 if __name__ == "__main__":

@@ -33,6 +33,7 @@ from roughmdr.shapes import PowerLaw, ProfileShape, Shape
 from roughmdr.shapes.kappa import kappa
 
 MODULUS, WORK = 4e6, 0.05
+ASPERITIES = {False: 1_000_000, True: 20_000}
 TABOR = (0.1, 1.0, 10.0, 100.0)
 TOTALS = {totals.FORCE, totals.AREA, totals.COUNT, totals.STIFFNESS, totals.ERROR}
 STATE = {totals.FORCE, totals.RADIUS, totals.STIFFNESS}
@@ -206,7 +207,7 @@ def measure(quick: bool) -> xr.Dataset:
     """Return all figures; ``quick`` of small ensembles."""
     from benchmarks.laws import by_law  # which takes its ensembles from here
 
-    count, repeats = (20_000, 1) if quick else (1_000_000, 3)
+    count, repeats = ASPERITIES[quick], 1 if quick else 3
     parts = [by_method(count, repeats), by_shape(count // 50, repeats), by_range(count // 10, repeats)]
     parts.append(by_law(count // 50 if quick else count // 10, repeats))
     parts += [by_cell(200 if quick else 10_000, repeats), by_workers(count // 10, 24, repeats)]

@@ -21,6 +21,7 @@ MODULUS, WORK, RADIUS = 4e6, 0.05, 50e-6  # of a soft rubber against a rigid bod
 TIP = rm.Paraboloid(radius=RADIUS)
 SHOWN = (0.1, 0.5, 1.0, 5.0)  # Tabor numbers of the curves
 NUMBERS = np.logspace(-3.0, 3.0, 61)
+TABOR_NUMBERS, ASPERITIES = {False: NUMBERS.size, True: 3}, {False: 5000, True: 300}
 ROUGH_NUMBERS = np.array([1.0, 3.0, 10.0, 30.0, 100.0])
 RATIOS = (0.1, 0.3, 1.0, 3.0, 10.0)  # std of the heights over the depth of the JKR pull-off
 STOPS = (2.0, 0.0, -1.0)  # of the flat, in std
@@ -81,7 +82,7 @@ def measure(quick: bool) -> xr.Dataset:
     """Return all numbers of the figure."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", rm.LimitWarning)
-        result = xr.merge([pull_off(3), rough(300)] if quick else [pull_off(NUMBERS.size), rough(5000)])
+        result = xr.merge([pull_off(TABOR_NUMBERS[quick]), rough(ASPERITIES[quick])])
     return result.assign_attrs(**_MATERIAL, radius=RADIUS)
 
 

@@ -13,6 +13,7 @@ import roughmdr as rm
 UM = 1e-6
 MODULUS = 3e6 / (1.0 - 0.49**2)  # [Pa]
 PATCH = 1e-3  # [m]
+ASPERITIES = {False: 2000, True: 200}
 MODELS: dict[str, Any] = {
     "independent": None,
     "mean field": "mean_field",
@@ -39,8 +40,8 @@ def ensemble_of(count: int) -> xr.Dataset:
 
 
 def measure(quick: bool) -> xr.Dataset:
-    """Return force and contact fraction by each of ``MODELS``; of a tenth of the asperities where ``quick``."""
-    ensemble = ensemble_of(200 if quick else 2000)
+    """Return force and contact fraction by each of ``MODELS``."""
+    ensemble = ensemble_of(ASPERITIES[quick])
     separation = np.linspace(3.0 * UM, UM, 10 if quick else 40)
     laws = []
     with warnings.catch_warnings():

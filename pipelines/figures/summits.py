@@ -30,6 +30,7 @@ SPECTRUM = SelfAffine.of(hurst=0.8, long_wave=SIZE / 8, short_wave=SIZE / WAVES,
 MAP_POINTS, EXACT_POINTS = 4 * WAVES, 16 * WAVES  # along a side: to make a map, and to look for its summits
 GRIDS = (4, 8, 16, 32)  # points a shortest wave
 DRAWN = 1_000_000
+MAPS = {False: 20, True: 3}
 STATISTICS = {
     "density": ("m-2", "summits of a unit of area"),
     "mean_height": ("m", "mean height"),
@@ -124,7 +125,7 @@ def summits(count: int, grids: tuple[int, ...], drawn: int) -> xr.Dataset:
 
 def measure(quick: bool) -> xr.Dataset:
     """Return all numbers of the figure; of fewer maps on coarser grids where ``quick``."""
-    return summits(3, GRIDS[:2], DRAWN // 10) if quick else summits(20, GRIDS, DRAWN)
+    return summits(MAPS[quick], *((GRIDS[:2], DRAWN // 10) if quick else (GRIDS, DRAWN)))
 
 
 def report(result: xr.Dataset) -> str:

@@ -44,6 +44,7 @@ SCENES = {
     "JKR, 40 asperities": scene_of(40, NORMAL, 0.05),
     "Hertz, 8 asperities, exponential heights": scene_of(8, {"distribution": "expon", "std": "1 um"}),
 }
+REALIZATIONS, RUNS = {False: 25_000, True: 4000}, {False: 200, True: 40}
 MINIMAL_COUNTS = (50, 200, 500, 1000, 4000)
 """Realisations that the errors asked for need at least."""
 
@@ -110,11 +111,10 @@ def realizations_taken(samples: ForceSamples, error: float, seeds: int, rule: st
 
 def measure(quick: bool) -> xr.Dataset:
     """Return the realisations taken by every scene, rule and error, and the share of runs that met the error."""
-    realizations, seeds = (4000, 40) if quick else (25_000, 200)
-    samples = [force_samples(name, realizations) for name in SCENES]
+    samples = [force_samples(name, REALIZATIONS[quick]) for name in SCENES]
     errors = [[each.true_error(count) for count in MINIMAL_COUNTS] for each in samples]
     taken = [
-        [[realizations_taken(each, error, seeds, rule) for error in row] for rule in RULES]
+        [[realizations_taken(each, error, RUNS[quick], rule) for error in row] for rule in RULES]
         for each, row in zip(samples, errors, strict=True)
     ]
     reached = (np.array(taken) >= np.array(MINIMAL_COUNTS)[:, None]).mean(axis=-1)

@@ -32,6 +32,7 @@ SCENES: dict[str, dict[str, Any]] = {
     "loading and unloading": {"unload": True},
     "loading and unloading, JKR": {"unload": True, "adhesive": True},
 }
+ASPERITIES, RUNS = {False: 400, True: 60}, {False: 3000, True: 300}
 CALLS, ADHESIVE = "kernel calls a visit", "calls for adhesion alone, a visit"
 RANDOM, VISITS = "random numbers an asperity", "visits"
 PARTS = {
@@ -143,8 +144,8 @@ def count_kept(asperities: int, runs: int) -> Case:
 
 def measure(quick: bool) -> xr.Dataset:
     """Return all counts, a case for each scene and part."""
-    cases: list[Case] = in_new_process(count_calls, 60 if quick else 400, NUMBA_DISABLE_JIT="1")
-    cases.append(count_kept(20, 300 if quick else 3000))
+    cases: list[Case] = in_new_process(count_calls, ASPERITIES[quick], NUMBA_DISABLE_JIT="1")
+    cases.append(count_kept(20, RUNS[quick]))
     cases.sort(key=lambda case: list(PARTS).index(case[0]))
     parts, scenes, counted, differences, stated = map(list, zip(*cases, strict=True))
     return xr.Dataset(

@@ -20,7 +20,9 @@ OUTPUT = click.option(
     "-o", "--output", type=click.Path(file_okay=False, path_type=Path), default=Path("results/studies"),
     show_default=True, help="Folder to write to.",
 )  # fmt: skip
-QUICK = click.option("--quick", is_flag=True, help="A reduced form: seconds, and rough figures.")
+QUICK = click.option("--quick", is_flag=True, help="A reduced form, with rough figures, that says what it leaves out.")
+REDUCED = "Reduced form: "
+"""Begins the line of a report that says what its study leaves out."""
 
 
 class Study(NamedTuple):
@@ -35,20 +37,22 @@ class Study(NamedTuple):
     """The picture NAME.png, or several pictures by their names."""
     report: Callable[[xr.Dataset], str]
     """Return a few sentences and tables in Markdown."""
-    reduced: str = ""
+    reduced: str
     """What the reduced form has of the full one."""
 
     def carry_out(self, output: Path, quick: bool) -> str:
-        """Measure, write all files to the folder ``output``, and return the report."""
+        """Measure, write all files to the folder ``output``, and return the report; all say where they are reduced."""
         output.mkdir(parents=True, exist_ok=True)
+        words = f"{REDUCED}{self.reduced}." if quick else ""
         result = self.measure(quick)
-        result = result.assign_attrs(provenance(self.title, f"{self.name}.py"))
+        result = result.assign_attrs(provenance(self.title, f"{self.name}.py"), **{"comment": words} if quick else {})
         write_netcdf(Labelled.of(result), output / f"{self.name}.nc")
         for name, draw in (self.draw if isinstance(self.draw, dict) else {self.name: self.draw}).items():
             with replace_atomically(output / f"{name}.png") as temporary:
-                draw(result).savefig(temporary, dpi=160, format="png")
-        reduced = f"\nReduced form: {self.reduced}.\n" if quick and self.reduced else ""
-        return f"## {self.title}\n{reduced}\n{self.report(result).strip()}\n"
+                figure = draw(result)
+                figure.text(0.5, 0.0, words, ha="center", va="top", color="tab:red")  # below all that is drawn
+                figure.savefig(temporary, dpi=160, format="png", bbox_inches="tight" if quick else None)
+        return "\n\n".join(filter(None, (f"## {self.title}", words, self.report(result).strip()))) + "\n"
 
     @property
     def command(self) -> click.Command:

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 import numpy as np
 import pytest
 from carried_out import CarriedOut, carried_out
+from forms import large
 from oracles.adhesive_elements import AdhesiveMap
 from oracles.boundary_elements import HeightMap
 from studies.versus_adhesive_bem.cases import DETACHED, MODELS, WORK, Case, law
@@ -59,15 +60,14 @@ def test_the_force_is_the_slope_of_the_energy() -> None:
     assert -slope == pytest.approx(states[1].force, rel=2e-3)
 
 
-def test_without_adhesion_it_is_the_other_boundary_elements() -> None:
+@pytest.mark.parametrize("separation", [-0.5, large(-0.8)])
+def test_without_adhesion_it_is_the_other_boundary_elements(separation: float) -> None:
     """Their forces are alike where next to nothing is attracted: by 2e-5 of the force, and less of less."""
     surface = lone_map(1e-6, LONE.reach)  # pressures are 0.2 to 0.5, the attraction is 1e-5
     other = HeightMap(surface.height, LONE.size)
-    for h in (-0.5, -0.8):
-        exact = other.press(h)
-        found = surface.move(h)
-        assert found.force == pytest.approx(exact.force, rel=1e-4)
-        assert found.closed == pytest.approx(exact.contact_area, rel=5e-3)
+    exact, found = other.press(separation), surface.move(separation)
+    assert found.force == pytest.approx(exact.force, rel=1e-4)
+    assert found.closed == pytest.approx(exact.contact_area, rel=5e-3)
 
 
 def test_far_away_there_is_no_force_and_no_energy() -> None:

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from adhesive_hills import STUDY
 from carried_out import CarriedOut, carried_out
+from studies.adhesive_hills.cases import QUICK, Adhesive
 from studies.adhesive_hills.judge import judge
 from studies.adhesive_hills.measure import METHODS
 from studies.adhesive_hills.stated import FACTOR, SETS, compare
@@ -16,6 +17,16 @@ from studies.adhesive_hills.stated import FACTOR, SETS, compare
 def studied(tmp_path_factory: pytest.TempPathFactory) -> Iterator[CarriedOut]:
     with carried_out(STUDY, tmp_path_factory.mktemp("adhesive_hills")) as made:
         yield made
+
+
+def test_hills_of_one_map_pull_off_nearer_to_elements_than_summits() -> None:
+    case = QUICK[1]
+    adhesive = Adhesive(case)
+    path = adhesive.path()
+    true = adhesive.by_elements(path, case.points, adhesive.reach).force.min()
+    hills, summits = (adhesive.law(each, path).force.min() / true for each in (adhesive.hills, adhesive.summits))
+    assert abs(hills - 1.0) < 0.13
+    assert abs(hills - 1.0) < abs(summits - 1.0)
 
 
 @pytest.mark.large

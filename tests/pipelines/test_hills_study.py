@@ -10,8 +10,8 @@ from hills import STUDY
 from oracles.free_elements import FreeMap
 from studies.hills.convergence import FINEST, SCALES
 from studies.hills.errors import errors_of, errors_on_files, groups, rms, within
-from studies.hills.maps import MapCase
-from studies.hills.measure import METHODS, PERSSON
+from studies.hills.maps import QUICK, MapCase
+from studies.hills.measure import METHODS, PERSSON, measure_maps
 from studies.hills.measured_maps import FILES, FOLDER, FREE_METHODS, measure_files
 from studies.hills.press import QUANTITIES, by_elements, by_persson, square
 from studies.hills.report_convergence import by_noise, by_points, by_scales
@@ -31,6 +31,14 @@ def studied(tmp_path_factory: pytest.TempPathFactory) -> Iterator[CarriedOut]:
 def test_a_map_is_the_same_on_every_grid() -> None:
     case = MapCase(0.5, 8, 3)
     np.testing.assert_allclose(case.height(8)[::2, ::2], case.height(4), atol=1e-12 * case.height(4).max())
+
+
+def test_hills_of_one_map_are_better_than_summits() -> None:
+    result = measure_maps(QUICK[:1])
+    for quantity in ("force", "stiffness"):
+        errors = errors_of(result, quantity)
+        hills, summits = (rms(errors.sel(solver=name)) for name in ("hills", "summits in pairs"))
+        assert 0.0 < hills < 0.7 * summits
 
 
 @pytest.mark.large

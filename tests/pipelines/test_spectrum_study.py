@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from carried_out import CarriedOut, carried_out
 from spectrum import STUDY
-from studies.spectrum.measure import METHODS
+from studies.spectrum.measure import METHODS, laws
 from studies.spectrum.report import means
 
 
@@ -15,6 +15,14 @@ from studies.spectrum.report import means
 def studied(tmp_path_factory: pytest.TempPathFactory) -> Iterator[CarriedOut]:
     with carried_out(STUDY, tmp_path_factory.mktemp("spectrum")) as made:
         yield made
+
+
+def test_hills_of_one_map_are_nearest() -> None:
+    force = {method: law["force"].to_numpy() for method, law in laws(0.8, 1).items()}
+    off = {method: np.abs(force[method] / force["boundary elements"] - 1.0).mean() for method in METHODS[:-1]}
+    nearest = off.pop("hills in pairs")
+    assert 0.0 < nearest < 0.04
+    assert nearest < 0.5 * min(off.values())
 
 
 @pytest.mark.large

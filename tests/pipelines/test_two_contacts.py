@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+from forms import large
 from oracles.boundary_elements import HeightMap
 from oracles.contact_areas import by_perimeter, label_contacts, of_half_ellipsoids
 from oracles.periodic_contact import periodic
@@ -30,12 +31,12 @@ def test_two_paraboloids(distance: float) -> None:
     assert contact.force == pytest.approx(4.0 / 3.0 * PARABOLOIDS[distance], rel=1e-9 if distance < 4 else 1e-11)
 
 
-@pytest.mark.parametrize("distance", PUNCHES)
+@pytest.mark.parametrize("distance", [2.5, 3, 4, large(6), large(10), large(20)])
 def test_two_level_punches(distance: float) -> None:
     assert punch_force(distance) == pytest.approx(2.0 * PUNCHES[distance], rel=1e-9)
 
 
-@pytest.mark.parametrize("indenter", [PARABOLOID, QUARTIC])
+@pytest.mark.parametrize("indenter", [PARABOLOID, large(QUARTIC)])
 def test_a_pair_converges_exponentially(indenter: Indenter) -> None:
     forces = [equal_pair(indenter, 4.0, degree).force for degree in (4, 6, 8, 10)]
     errors = [abs(force / forces[-1] - 1.0) for force in forces[:-1]]
@@ -120,7 +121,7 @@ def test_the_tilted_plane_by_boundary_integrals(indenter: Indenter, rtol: float)
     assert (tilted.force, tilted.moment) == pytest.approx((exact.force, exact.moment), rel=rtol)
 
 
-@pytest.mark.parametrize("side", PERIODIC)
+@pytest.mark.parametrize("side", [large(12), 6])
 def test_a_paraboloid_in_a_periodic_patch(side: int) -> None:
     share, area = PERIODIC[side]
     contact = periodic(PARABOLOID, side, degree=4)

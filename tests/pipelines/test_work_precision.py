@@ -1,13 +1,8 @@
 """The study of error against run time in its quick form: errors and counted work, never what it times."""
 
-from importlib import import_module
-from pathlib import Path
-
-import all_studies
 import numpy as np
 import pytest
 import xarray as xr
-from click.testing import CliRunner
 from studies.work_precision import measure
 from studies.work_precision.measure import cheapest, points_of
 from studies.work_precision.points import QUANTITIES, Method, Point
@@ -17,36 +12,13 @@ from studies.work_precision.tip import DEPTHS
 
 
 @pytest.fixture(scope="module")
-def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """What the studies leave behind, of which one fails."""
-    folder = tmp_path_factory.mktemp("studies")
+def result() -> xr.Dataset:
+    """The numbers of the quick form without the root finder on surfaces, which takes half of the time."""
+    tips, surfaces = measure.PARTS
+    surfaces = surfaces._replace(methods=tuple(each for each in surfaces.methods if each.name != "brentq"))
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(all_studies, "NAMES", ("no_such_study", "work_precision"))
-        done = CliRunner().invoke(all_studies.main, ["-o", str(folder), "--quick"])
-    assert done.exit_code == 1
-    assert "failed: no_such_study" in done.output
-    return folder
-
-
-@pytest.fixture(scope="module")
-def result(folder: Path) -> xr.Dataset:
-    with xr.open_dataset(folder / "work_precision.nc") as stored:
-        return stored.load()
-
-
-@pytest.mark.large
-def test_a_study_that_fails_keeps_no_other_from_the_report(folder: Path) -> None:
-    assert sorted(path.name for path in folder.iterdir()) == ["report.md", "work_precision.nc", "work_precision.png"]
-    report = (folder / "report.md").read_text()
-    assert "## no_such_study\n\nfailed\n" in report
-    assert "## Error against run time\n\nReduced form: every other setting" in report
-    assert "Reduced forms; `make studies-full`" in report
-    assert "![work_precision](work_precision.png)" in report
-
-
-def test_every_study_says_what_its_reduced_form_leaves_out() -> None:
-    for name in all_studies.NAMES:
-        assert len(import_module(name).STUDY.reduced) > 10, name
+        patch.setattr(measure, "PARTS", (tips, surfaces))
+        return measure.measure(True)
 
 
 def points(result: xr.Dataset, scene: str, method: str) -> tuple[np.ndarray, np.ndarray]:
@@ -62,21 +34,18 @@ def slope(error: np.ndarray, evaluations: np.ndarray) -> float:
 TIP, HERTZ, JKR = "paraboloid, JKR", "Hertz, lognormal radii", "JKR, equal radii"
 
 
-@pytest.mark.large
 def test_closed_forms_are_exact_with_an_evaluation_for_each_state(result: xr.Dataset) -> None:
     error, evaluations = points(result, TIP, "closed forms")
     assert (error < 1e-12).all()
     assert evaluations == [DEPTHS.size + 1]
 
 
-@pytest.mark.large
 def test_springs_come_nearer_in_proportion_to_their_number(result: xr.Dataset) -> None:
     error, evaluations = points(result, TIP, "springs")
     for quantity in range(len(QUANTITIES)):
         assert slope(error[:, quantity], evaluations) == pytest.approx(-1.0, abs=0.1)
 
 
-@pytest.mark.large
 def test_root_finders_come_nearer_with_every_decade_of_tolerance(result: xr.Dataset) -> None:
     for method, finest in (("brentq", 1e-12), ("Abel quadrature", 1e-12), ("plain NumPy", 1e-2)):
         error, evaluations = points(result, TIP, method)
@@ -99,7 +68,6 @@ def test_draws_come_nearer_as_the_root_of_their_number_and_even_ones_begin_neare
     assert own_visits[0] == pytest.approx(visits[0], rel=0.05)
 
 
-@pytest.mark.large
 @pytest.mark.parametrize("scene", [HERTZ, JKR])
 def test_the_expected_law_is_exact_for_less_than_one_realisation(result: xr.Dataset, scene: str) -> None:
     error, evaluations = points(result, scene, "expected")
@@ -108,7 +76,6 @@ def test_the_expected_law_is_exact_for_less_than_one_realisation(result: xr.Data
     assert evaluations[0] < simulate(SURFACES[scene], "sampled").evaluations
 
 
-@pytest.mark.large
 def test_errors_that_are_asked_for_are_met(result: xr.Dataset) -> None:
     for scene in (HERTZ, JKR):
         for method in ("sampled", "stratified", "auto"):
@@ -116,7 +83,6 @@ def test_errors_that_are_asked_for_are_met(result: xr.Dataset) -> None:
             assert (own.error.sel(quantity="force") <= 2.0 * own.setting).all()  # of two runs each
 
 
-@pytest.mark.large
 def test_the_cheapest_comes_to_the_error_and_is_no_dearer_than_any_other(result: xr.Dataset) -> None:
     found = 0
     for scene in (TIP, HERTZ, JKR):
