@@ -9,8 +9,8 @@ BIN    := $(VENV)/bin
 READY  := $(VENV)/ready
 TESTS  := $(BIN)/python -m pytest -n auto
 UNCOMPILED := $(addprefix tests/,asperity kernels numerics shapes springs \
-  $(addsuffix .py,$(addprefix aggregate/test_,few_searches machine sum) \
-  $(addprefix interaction/test_,close contacts green jkr_parts)))
+  $(addsuffix .py,$(addprefix aggregate/test_,few_searches machine shapes_in_ensembles sum) \
+  $(addprefix interaction/test_,close contacts green jkr_parts jkr_shapes)))
 
 .PHONY: demo test test-all docs studies studies-full setup lint lock release clean
 

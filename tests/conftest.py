@@ -42,10 +42,12 @@ class _Meter(Listener):
 _METER = _Meter()
 
 
-def pytest_configure() -> None:
+def pytest_configure(config: pytest.Config) -> None:
     """Let tests interrupt what they start, also where they run in the background of a shell, which ignores SIGINT."""
     signal.signal(signal.SIGINT, signal.default_int_handler)
     register("numba:compile", _METER)
+    if numba.config.DISABLE_JIT:  # numpy warns of inf and NaN, which compiled code goes on with
+        config.addinivalue_line("filterwarnings", "ignore:.* encountered in scalar:RuntimeWarning")
 
 
 def pytest_sessionfinish(session: pytest.Session) -> None:

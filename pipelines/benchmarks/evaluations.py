@@ -10,7 +10,7 @@ from roughmdr.aggregate.loop import sum_over_asperities
 from roughmdr.aggregate.totals import FORCE
 from roughmdr.kernels.adhesion import Adhesion
 from roughmdr.kernels.choose import choose
-from roughmdr.kernels.interface import Columns, Material
+from roughmdr.kernels.interface import Columns
 from roughmdr.kernels.profile.layout import COUNT
 from roughmdr.loading.staircase import no_memory, staircase
 from roughmdr.shapes import SHAPES, Shape
@@ -47,9 +47,8 @@ def evaluations(name: str, strength: float, alike: int = 1) -> tuple[int, int, i
     kernels = choose(name, Adhesion(WORK, "dugdale", strength), params)
     with np.errstate(all="ignore"):
         with cProfile.Profile() as preparing:
-            row = kernels.prepare(
-                Material(MODULUS, WORK, strength), Columns(width, rise, params), 0, alike, 0.0, math.inf
-            )[0]
+            material = kernels.material(MODULUS, Adhesion(WORK, "dugdale", strength))
+            row = kernels.prepare(material, Columns(width, rise, params), 0, alike, 0.0, math.inf)[0]
         with cProfile.Profile() as solving:
             for x in np.geomspace(0.1, 1e3, CONTACTS).tolist():
                 kernels.contact_at(x, float(row[COUNT]), row)

@@ -13,13 +13,6 @@ from roughmdr.numerics.jit import as_argument
 # Rows of the natural scales of a block.
 DEPTH_SCALE, PER_DEPTH, RADIUS_SCALE, FORCE_SCALE, STIFFNESS_SCALE, ENERGY_SCALE = range(6)
 SCALES = 6
-# Rows of its contacts. Radius, force and stiffness are filled where the kernels find them together with the state.
-STATE, RADIUS, FORCE, STIFFNESS, STATE_ERROR, IN_CONTACT, BEFORE, TERM = range(8)
-"""STATE_ERROR is filled where the kernels approach the state by steps; once contacts are found it has room for the
-terms of a sum. IN_CONTACT is 1 in contact, else 0, with several branches the number of the branch. BEFORE is IN_CONTACT
-at the step before. TERM has room for x until the contacts are found, then for the terms of a sum.
-"""
-CONTACT_ROWS = 8
 
 
 class Block(NamedTuple):
@@ -62,8 +55,9 @@ class SumKernels(Kernels):
     natural_scales: Callable[..., bool]
     lowest_in_contact: Callable[..., float]
     update_contact: Callable[..., None]
-    evaluate: Callable[..., None]
     place: Callable[..., None]
+    follow: Callable[..., None]
+    follow_branches: Callable[..., None]
     guess_states: Callable[..., None]
     solve_contacts: Callable[..., None]
     radius_at: Callable[[Floats, Any, int], float]
@@ -73,6 +67,8 @@ class SumKernels(Kernels):
     total_error: Callable[..., float]
     error_bound: Callable[..., float]
     jumps: Callable[..., float]
+    jumps_between_branches: Callable[..., float]
+    jumps_of_one: Callable[..., float]
     add_totals: Callable[..., None]
     loop: Callable[..., int]
     block_at: Callable[..., Block]

@@ -2,19 +2,9 @@
 
 from typing import Any
 
-from roughmdr.aggregate.block import (
-    DEPTH_SCALE,
-    FORCE,
-    IN_CONTACT,
-    PER_DEPTH,
-    RADIUS,
-    STATE,
-    STATE_ERROR,
-    STIFFNESS,
-    TERM,
-    Block,
-    law,
-)
+from roughmdr.aggregate.block import DEPTH_SCALE, PER_DEPTH, Block, law
+from roughmdr.kernels.blocks import FORCE, IN_CONTACT, RADIUS, STATE, STATE_ERROR, STIFFNESS, TERM
+from roughmdr.kernels.profile.layout import BRANCHED
 from roughmdr.loading.staircase import Staircase
 from roughmdr.numerics.arguments import Floats
 
@@ -31,13 +21,28 @@ def update_contact(count: int, block: Block, memory: Staircase, begin: int, end:
             contacts[IN_CONTACT, i] = 1.0 if held else contacts[IN_CONTACT, i]
 
 
-def evaluate(count: int, block: Block) -> None:
-    """Find a, P and k of the first ``count`` contacts from their states."""
-    contacts, params = block.contacts, block.params
+def follow_pairs(count: int, block: Block, touched: float, memory: Staircase, begin: int, end: int) -> None:
+    """Find which of the first ``count`` asperities are in contact, where there is one branch."""
+    law.update_contact(count, block, memory, begin, end)
+
+
+def follow_branches(count: int, block: Block, touched: float, memory: Staircase, begin: int, end: int) -> None:
+    """Find the branches of the first ``count`` asperities from those at the step before; contact begins at heights of
+    ``touched``.
+    """
+    z, params, contacts = block.z, block.params, block.contacts
     for i in range(count):
-        contacts[RADIUS, i], contacts[FORCE, i], contacts[STIFFNESS, i] = law.radius_force_stiffness(
-            contacts[STATE, i], law.params_of(params, i)
+        contacts[IN_CONTACT, i] = law.branch(
+            contacts[TERM, i], contacts[IN_CONTACT, i], z[i] >= touched, law.params_of(params, i)
         )
+
+
+def follow_either(count: int, block: Block, touched: float, memory: Staircase, begin: int, end: int) -> None:
+    """Do as ``follow_branches`` or as ``follow_pairs``, as the rows tell."""
+    if block.params[0, BRANCHED] > 0.0:
+        law.follow_branches(count, block, touched, memory, begin, end)
+    else:
+        law.update_contact(count, block, memory, begin, end)
 
 
 def solve_closed(
@@ -58,7 +63,7 @@ def solve_closed(
         for i in range(count):
             contacts[STATE, i] = law.state((z[i] - h) * scales[PER_DEPTH, i], law.params_of(params, i))
     if law.found_together:
-        law.evaluate(count, block)
+        law.evaluate_all(count, block.contacts, block.params)
 
 
 def solve_refined(
@@ -71,7 +76,7 @@ def solve_refined(
     for _ in range(law.refinements):
         for i in range(count):
             state[i] = law.refined(state[i], x[i], law.params_of(params, i))
-    law.evaluate(count, block)
+    law.evaluate_all(count, block.contacts, block.params)
 
 
 def guess_states(
@@ -90,12 +95,11 @@ def guess_states(
 def solve_iterative(
     count: int, block: Block, h: float, adhesion_range: float, memory: Staircase, begin: int, end: int
 ) -> None:
-    """Do as ``solve_closed`` by a fixed number of steps for all contacts, as vector code, and a search for some."""
+    """Do as ``solve_closed`` by what is the same for all contacts, as vector code, and a search for some."""
     params, contacts = block.params, block.contacts
     state, error, in_contact, x = contacts[STATE], contacts[STATE_ERROR], contacts[IN_CONTACT], contacts[TERM]
     law.guess_states(count, block, h, adhesion_range, memory, begin, end)
-    for i in range(count):
-        state[i], error[i], _ = law.approach(state[i], x[i], law.params_of(params, i))
+    law.find_all(count, contacts, params)
     unknown = 0
     for i in range(count):
         branch = in_contact[i] if law.adhesive else 1.0
@@ -104,31 +108,11 @@ def solve_iterative(
         for i in range(count):
             branch, own = in_contact[i] if law.adhesive else 1.0, law.params_of(params, i)
             if branch > 0.0 and not law.converged(error[i], branch, own):
-                t, left, _ = law.one_step(state[i], x[i], own)
+                t, left, _ = law.one_step(state[i], x[i], own)  # from a state that may be below 0: then none converges
                 state[i] = t if law.converged(left, branch, own) else law.state_on_branch(x[i], branch, own)
-    law.evaluate(count, block)
-
-
-def solve_near(
-    count: int, block: Block, h: float, adhesion_range: float, memory: Staircase, begin: int, end: int
-) -> None:
-    """Do as ``solve_closed`` from the values at good guesses, as vector code, and by a search for some."""
-    params, contacts = block.params, block.contacts
-    state, a, force, stiffness = contacts[STATE], contacts[RADIUS], contacts[FORCE], contacts[STIFFNESS]
-    error, x = contacts[STATE_ERROR], contacts[TERM]
-    law.guess_states(count, block, h, adhesion_range, memory, begin, end)
-    for i in range(count):
-        state[i], a[i], force[i], stiffness[i], error[i] = law.contact_near(state[i], x[i], law.params_of(params, i))
-    unknown = 0
-    for i in range(count):
-        unknown += law.converged(error[i], 1.0, law.params_of(params, i)) < 1
-    if unknown > 0:
-        for i in range(count):
-            own = law.params_of(params, i)
-            if not law.converged(error[i], 1.0, own):  # such a state may be below 0: then no step converges
-                t, left, _ = law.one_step(state[i], x[i], own)
-                state[i] = t if law.converged(left, 1.0, own) else law.state_on_branch(x[i], 1.0, own)
-                a[i], force[i], stiffness[i] = law.radius_force_stiffness(state[i], own)
+                contacts[RADIUS, i], contacts[FORCE, i], contacts[STIFFNESS, i] = law.radius_force_stiffness(
+                    state[i], own
+                )
 
 
 def solve_each(
@@ -152,19 +136,12 @@ def place(count: int, block: Block, h: float, adhesion_range: float, memory: Sta
     Those out of contact have the x of first touch. With several branches, IN_CONTACT holds the number of the
     branch at the step before, and then the new one.
     """
-    z, params = block.z, block.params
-    scales, contacts = block.scales, block.contacts
+    z, scales, contacts = block.z, block.scales, block.contacts
     lift = 1.0 if law.adhesive else 0.0
     for i in range(count):
         contacts[TERM, i] = max(((z[i] - h) + lift * scales[DEPTH_SCALE, i]) * scales[PER_DEPTH, i], 0.0)
-    if law.branched:
-        for i in range(count):
-            contacts[IN_CONTACT, i] = law.branch(
-                contacts[TERM, i], contacts[IN_CONTACT, i], z[i] >= h - adhesion_range, law.params_of(params, i)
-            )
-    elif law.adhesive:
-        law.update_contact(count, block, memory, begin, end)
     if law.adhesive:
+        law.follow(count, block, h - adhesion_range, memory, begin, end)
         for i in range(count):
             contacts[TERM, i] = contacts[TERM, i] if contacts[IN_CONTACT, i] > 0.0 else 1.0
 

@@ -50,8 +50,8 @@ def _compiled(kernels: Kernels) -> Callable[..., None]:
 def detachments(kernels: Kernels, columns: Columns, effective_modulus: float, adhesion: Adhesion) -> Detachments:
     """Return where each adhesive contact detaches; E* [Pa]."""
     found = Detachments(np.empty(columns.width.size), np.zeros(columns.width.size))
-    material = Material(effective_modulus, adhesion.work, adhesion.strength)
-    _compiled(kernels)(columns, material, prepare_of(kernels, columns, material), found)
+    material = kernels.material(effective_modulus, adhesion)
+    _compiled(kernels.of_any or kernels)(columns, material, prepare_of(kernels, columns, material), found)
     return found
 
 

@@ -18,21 +18,8 @@ u (g + dl) with g = z - h + dl, are added to eta. Where the state comes from the
 
 import math
 
-from roughmdr.aggregate.block import (
-    DEPTH_SCALE,
-    FORCE,
-    FORCE_SCALE,
-    IN_CONTACT,
-    PER_DEPTH,
-    RADIUS,
-    STATE,
-    STATE_ERROR,
-    STIFFNESS,
-    STIFFNESS_SCALE,
-    TERM,
-    Block,
-    law,
-)
+from roughmdr.aggregate.block import DEPTH_SCALE, FORCE_SCALE, PER_DEPTH, STIFFNESS_SCALE, Block, law
+from roughmdr.kernels.blocks import FORCE, IN_CONTACT, RADIUS, STATE, STATE_ERROR, STIFFNESS, TERM
 from roughmdr.numerics.double_double import ROUNDING
 from roughmdr.numerics.jit import njit
 from roughmdr.numerics.summation import BLOCK, block_minimum, sum_by_halves

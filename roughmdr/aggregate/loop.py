@@ -12,11 +12,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from roughmdr.aggregate.block import (
-    BEFORE,
-    CONTACT_ROWS,
     DEPTH_SCALE,
     FORCE_SCALE,
-    IN_CONTACT,
     RADIUS_SCALE,
     SCALES,
     Block,
@@ -26,7 +23,9 @@ from roughmdr.aggregate.block import (
     prepare_of,
 )
 from roughmdr.aggregate.contacts import (
-    evaluate,
+    follow_branches,
+    follow_either,
+    follow_pairs,
     force_of_state,
     found_force,
     found_radius,
@@ -37,7 +36,6 @@ from roughmdr.aggregate.contacts import (
     solve_closed,
     solve_each,
     solve_iterative,
-    solve_near,
     solve_refined,
     stiffness_of_state,
     update_contact,
@@ -54,9 +52,11 @@ from roughmdr.aggregate.totals import (
     add_totals,
     jumps,
     jumps_between_branches,
+    jumps_of_either,
 )
 from roughmdr.errors import OutOfRange
 from roughmdr.kernels.adhesion import Adhesion
+from roughmdr.kernels.blocks import BEFORE, CONTACT_ROWS, IN_CONTACT, evaluate_all, find_by_steps, find_near
 from roughmdr.kernels.interface import Columns, Kernels, Material
 from roughmdr.loading.staircase import Staircase, no_memory
 from roughmdr.numerics.arguments import Floats
@@ -181,15 +181,17 @@ def compiled_sum(kernels: Kernels, *, energetic: bool) -> SumKernels:
     name, together = kernels.name + ("_energetic" if energetic else ""), kernels.found_together
     whole = SumKernels(name)
     solve = solve_iterative if kernels.iterative else solve_refined if kernels.refinements > 0 else solve_closed
-    solve = solve_each if kernels.one_by_one else solve_near if kernels.found_near else solve
+    solve = solve_each if kernels.one_by_one else solve
+    follow = follow_either if kernels.rows_tell else follow_branches if kernels.branched else follow_pairs
     vars(whole).update({"term_sizes": no_terms, **vars(kernels), "__name__": name})
     whole.energetic = energetic
     parts: dict[str, Callable[..., object]] = {
         "natural_scales": natural_scales,
         "lowest_in_contact": lowest_in_contact,
         "update_contact": update_contact,
-        "evaluate": evaluate,
         "place": place,
+        "follow": follow,
+        "follow_branches": follow_branches,
         "guess_states": guess_states,
         "solve_contacts": solve,
         "radius_at": found_radius if together else radius_of_state,
@@ -197,9 +199,13 @@ def compiled_sum(kernels: Kernels, *, energetic: bool) -> SumKernels:
         "stiffness_at": found_stiffness if together else stiffness_of_state,
         "total_error": total_error,
         "error_bound": bound_each if together else bound_block,
-        "jumps": jumps_between_branches if kernels.branched else jumps,
+        "jumps": jumps_of_either if kernels.rows_tell else jumps_between_branches if kernels.branched else jumps,
+        "jumps_of_one": jumps,
+        "jumps_between_branches": jumps_between_branches,
         "add_totals": add_totals,
     }
+    if "find_all" not in vars(kernels):
+        parts |= {"find_all": find_near if kernels.found_near else find_by_steps, "evaluate_all": evaluate_all}
     for name, part in parts.items():
         of_one = name in _OF_ONE_CONTACT
         vars(whole)[name] = specialise(part, whole, inline=not of_one, small=of_one)
@@ -228,8 +234,9 @@ def sum_over_asperities(
     wanted[RADIUS] |= wanted[CONDUCTANCE]
     shape = ROWS, separation.size
     totals = Totals(wanted, np.zeros(shape), np.zeros(shape), np.zeros((2, height.size)))
-    material = Material(effective_modulus, adhesion.work, adhesion.strength)
-    compiled = compiled_sum(kernels.in_sums or kernels, energetic=not _ENERGIES.isdisjoint(rows))
+    of_sum, energetic = kernels.in_sums or kernels, not _ENERGIES.isdisjoint(rows)
+    material = of_sum.material(effective_modulus, adhesion, summed=True, energetic=energetic)
+    compiled = compiled_sum(of_sum.of_any or of_sum, energetic=energetic)
     if compiled.adhesive:
         memory = memory._replace(bottom=memory.bottom - adhesion.range)
     else:

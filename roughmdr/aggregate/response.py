@@ -11,21 +11,10 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from roughmdr.aggregate.block import (
-    CONTACT_ROWS,
-    DEPTH_SCALE,
-    FORCE_SCALE,
-    IN_CONTACT,
-    RADIUS_SCALE,
-    SCALES,
-    STIFFNESS,
-    STIFFNESS_SCALE,
-    TERM,
-    Block,
-    law,
-)
+from roughmdr.aggregate.block import DEPTH_SCALE, FORCE_SCALE, RADIUS_SCALE, SCALES, STIFFNESS_SCALE, Block, law
 from roughmdr.aggregate.far_contacts import GROUP, Far, far_response, nothing_known, slot_for
 from roughmdr.aggregate.loop import count_above
+from roughmdr.kernels.blocks import CONTACT_ROWS, IN_CONTACT, STIFFNESS, TERM
 from roughmdr.kernels.interface import Columns, Material
 from roughmdr.loading.staircase import Staircase
 from roughmdr.numerics.arguments import Floats

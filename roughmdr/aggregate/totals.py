@@ -2,19 +2,9 @@
 
 import math
 
-from roughmdr.aggregate.block import (
-    BEFORE,
-    ENERGY_SCALE,
-    FORCE_SCALE,
-    IN_CONTACT,
-    RADIUS_SCALE,
-    STATE,
-    STIFFNESS_SCALE,
-    TERM,
-    Block,
-    Totals,
-    law,
-)
+from roughmdr.aggregate.block import ENERGY_SCALE, FORCE_SCALE, RADIUS_SCALE, STIFFNESS_SCALE, Block, Totals, law
+from roughmdr.kernels.blocks import BEFORE, IN_CONTACT, STATE, TERM
+from roughmdr.kernels.profile.layout import BRANCHED
 from roughmdr.numerics.summation import BLOCK, accumulate, sum_by_halves
 
 # Rows of the totals.
@@ -101,6 +91,13 @@ def jumps(count: int, block: Block) -> float:
             terms[i] = scales[ENERGY_SCALE, i] * (-energy if made else energy)
         contacts[BEFORE, i] = now
     return sum_by_halves(terms, count, BLOCK)
+
+
+def jumps_of_either(count: int, block: Block) -> float:
+    """Return as ``jumps_between_branches`` or as ``jumps``, as the rows tell."""
+    if block.params[0, BRANCHED] > 0.0:
+        return float(law.jumps_between_branches(count, block))
+    return float(law.jumps_of_one(count, block))
 
 
 def jumps_between_branches(count: int, block: Block) -> float:

@@ -9,7 +9,7 @@ from roughmdr.aggregate.loop import compiled_sum
 from roughmdr.aggregate.machine_leg import follow
 from roughmdr.errors import OutOfRange
 from roughmdr.kernels.adhesion import Adhesion
-from roughmdr.kernels.interface import Columns, Kernels, Material
+from roughmdr.kernels.interface import Columns, Kernels
 from roughmdr.loading.machine import Jump, Machine, legs_of
 from roughmdr.loading.staircase import staircase
 from roughmdr.numerics.arguments import Floats
@@ -50,7 +50,7 @@ def separations_of(
     found = list[Jump]()
     if not height.size:
         return (demand if machine.weight > 0.0 else np.full(demand.size, np.inf)), found
-    material = Material(effective_modulus, adhesion.work, adhesion.strength)
+    material = kernels.material(effective_modulus, adhesion)
     touches = releases = _NONE
     release = height
     if kernels.adhesive:

@@ -10,7 +10,7 @@ from roughmdr.errors import OutOfRange, ShapeError
 from roughmdr.kernels.adhesion import Adhesion
 from roughmdr.kernels.choose import choose
 from roughmdr.kernels.elementwise import apply, apply_all
-from roughmdr.kernels.interface import Columns, Kernels, Material
+from roughmdr.kernels.interface import Columns, Kernels
 from roughmdr.kernels.profile.exact_fold import exact_depth
 from roughmdr.kernels.profile.layout import COUNT
 from roughmdr.numerics.arguments import Floats
@@ -209,5 +209,5 @@ class Contact(NamedTuple):
 def prepared(law: Kernels, shape: Shape, effective_modulus: float, adhesion: Adhesion, control: float) -> Any:
     """Return the params of one contact under a control."""
     width, rise, params = (np.asarray(part, dtype=np.float64)[None] for part in shape.nondimensional())
-    material = Material(effective_modulus, adhesion.work, adhesion.strength)
+    material = law.material(effective_modulus, adhesion)
     return law.params_of(law.prepare(material, Columns(width, rise, params), 0, 1, control, math.inf), 0)

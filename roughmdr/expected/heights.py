@@ -13,7 +13,7 @@ from roughmdr.ensemble.nodes import Heights, UpperTail
 from roughmdr.errors import OutOfRange
 from roughmdr.expected.table import ORDER, AdaptiveTable
 from roughmdr.numerics.arguments import Floats
-from roughmdr.numerics.chebyshev import evaluate_series
+from roughmdr.numerics.chebyshev import evaluate_series, find_piece
 from roughmdr.numerics.gauss import gauss
 from roughmdr.numerics.jit import njit
 
@@ -133,14 +133,15 @@ def _counted(below: Floats, above: Floats) -> Floats:
 def _fractions_below(heights: HeightTable, y: Floats) -> Floats:
     """Return the fraction of all heights below each y [m]."""
     fractions = np.empty(y.size)
-    u, density, before, earlier = np.empty((4, _NODES.size))
+    u, density = np.empty((2, _NODES.size))
+    before, earlier = np.empty(_NODES.size), np.empty(_NODES.size)  # apart, as in ``integral``: one form serves both
     for i in range(y.size):
         if y[i] <= heights.low[0]:
             fractions[i] = 0.0
         elif y[i] >= heights.high[-1]:
             fractions[i] = heights.below[-1]
         else:
-            piece = np.searchsorted(heights.high, y[i], side="right")
+            piece = find_piece(heights.high, y[i])
             low, high = heights.low[piece], heights.high[piece]
             half, middle = 0.5 * (y[i] - low), 0.5 * (y[i] + low)
             for m in range(u.size):

@@ -39,9 +39,10 @@ class Placed:
         self.kept = np.flatnonzero(~below.hidden)
         """The numbers of the asperities that are not buried."""
         ensemble = ensemble.taken(self.kept)
-        self._columns, self._material = ensemble.nondimensional(), Material(effective_modulus, 0.0, math.inf)
+        self._columns = ensemble.nondimensional()
         self.law = choose(ensemble.shape, Adhesion(), self._columns.params)
         """Their kernels without adhesion."""
+        self._material = self.law.material(effective_modulus, Adhesion())
         self.at = at[self.kept] / self.length
         self.height = ensemble.height / self.length
         self.emerging = below.emerging[self.kept] / self.length

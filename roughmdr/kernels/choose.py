@@ -53,11 +53,22 @@ def _closed(shape: str, adhesive: bool) -> Kernels:
 @once
 def _of_profile(shape: type[ProfileShape], adhesive: bool) -> Kernels:
     """Return the kernels of a shape that is known by its profile."""
-    law = build(shape, cohesive=False).copy("_jkr" if adhesive else "_elastic")
+    law: Kernels = build(shape, cohesive=False).copy("_jkr" if adhesive else "_elastic")
     law.adhesive, law.branched, law.hardening = adhesive, adhesive and shape.branched(), not adhesive
+    if law.of_any is not None:
+        law.of_any = _of_any(law.of_any, adhesive)
     if shape.similar and not adhesive:
         law.in_sums = build(shape, cohesive=False, similar=True)
         law.in_sums.hardening = True
+    return law
+
+
+@once
+def _of_any(kernels: Kernels, adhesive: bool) -> Kernels:
+    """Return kernels of any shape with or without adhesion."""
+    law = kernels.copy("_jkr" if adhesive else "_elastic")
+    law.adhesive = adhesive
+    law.rows_tell = adhesive
     return law
 
 

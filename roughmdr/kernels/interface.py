@@ -10,6 +10,7 @@ from collections.abc import Callable
 from types import ModuleType
 from typing import Any, NamedTuple, Self
 
+from roughmdr.kernels.adhesion import Adhesion
 from roughmdr.numerics.arguments import Floats
 
 Kernel = Callable[..., float]
@@ -24,6 +25,8 @@ class Material(NamedTuple):
     """w [J/m2]; 0 for none."""
     strength: float
     """sigma0 [Pa] of adhesion with a range, else inf."""
+    functions: float
+    """The address of those of the shape, as ``Kernels.material`` knows it; 0 where the kernels hold them."""
 
 
 class Columns(NamedTuple):
@@ -66,6 +69,14 @@ class Kernels(ModuleType):
 
     in_sums: Self | None = None
     """Kernels for the sum over asperities alone, where these are too slow for it; None where they are not."""
+    of_any: Self | None = None
+    """Kernels of any shape, which call the functions of this one by the addresses that its rows lead to: what is
+    compiled with them serves all shapes."""
+    rows_tell: bool = False
+    """Whether a row says if there can be more than one stable branch, which is as ``branched`` for shapes of all."""
+    functions: Callable[[bool, bool], float] | None = None
+    """(whether those of a sum are needed, and of its energies) -> the address of the functions that ``of_any`` calls.
+    """
 
     prepare: Callable[[Material, Columns, int, int, float, float], Any]
     """(material, columns, start, stop, control, deepest) -> params of the asperities from start to stop; control is 0
@@ -130,6 +141,10 @@ class Kernels(ModuleType):
     """(x or ``y_of_x``, params) -> the state to begin at."""
     y_of_x: Kernel
     """(x, params) -> the variable of a table of guesses; this and the next two where ``iterative``."""
+    find_all: Callable[..., None]
+    """(count, contacts, params) -> None; fills in what ``kernels.blocks`` says."""
+    evaluate_all: Callable[..., None]
+    """Alike, from the states alone."""
     approach: Callable[..., tuple[float, float, float]]
     """(that state, x, params) -> the state after a fixed number of steps, a bound of its error, and d(state)/dx."""
     one_step: Callable[..., tuple[float, float, float]]
@@ -150,6 +165,17 @@ class Kernels(ModuleType):
     def name(self) -> str:
         """The name by which copies of a loop are told apart in the cache."""
         return self.__name__
+
+    def material(
+        self, effective_modulus: float, adhesion: Adhesion, *, summed: bool = False, energetic: bool = False
+    ) -> Material:
+        """Return elasticity and adhesion for ``prepare``; E* [Pa].
+
+        ``summed`` where a sum compiled with ``of_any`` reads the rows, ``energetic`` where it sums energies. The
+        material is of this process and must not leave it.
+        """
+        at = 0.0 if self.functions is None else self.functions(summed, energetic)
+        return Material(effective_modulus, adhesion.work, adhesion.strength, at)
 
     def copy(self, suffix: str = "") -> Self:
         """Return these kernels under a name with ``suffix``, to be changed."""

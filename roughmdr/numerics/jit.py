@@ -11,17 +11,16 @@ from types import CodeType, FunctionType, ModuleType
 from typing import Any, TypeVar, cast
 
 import numba
-from numba._dispatcher import compute_fingerprint
-from numba.core.compiler_lock import global_compiler_lock
-from numba.core.types import FunctionType as FunctionPointer
-from numba.core.types import unliteral
 
+from roughmdr.numerics import numba_parts
 from roughmdr.numerics.cache import keep_on_disk
 from roughmdr.numerics.compiling import let_collector_rest
 from roughmdr.numerics.rebind import rebuilt
 
 let_collector_rest()
 _config: Any = numba.config
+UNCOMPILED = bool(_config.DISABLE_JIT)
+"""Whether functions stay as they are, by NUMBA_DISABLE_JIT."""
 _Made = TypeVar("_Made")
 _Function = TypeVar("_Function", bound=Callable[..., Any])
 
@@ -38,7 +37,7 @@ def once(make: Callable[..., _Made]) -> Callable[..., _Made]:
     def kept(*arguments: Any, **named: Any) -> _Made:
         key = arguments, tuple(sorted(named.items()))
         if key not in made:
-            with global_compiler_lock:
+            with numba_parts.lock:
                 if key not in made:
                     made[key] = make(*arguments, **named)
         return made[key]
@@ -57,26 +56,17 @@ def njit(function: _Function, *, inline: bool = False, small: bool = False) -> _
     decorator = partial(numba.njit, nogil=True, **options)
     whole: Any = _kept_on_disk(decorator, function)
     if not _config.DISABLE_JIT and not inline:
-        _let_compiled_code_call(whole, decorator)
+        numba_parts.let_compiled_code_call(whole, _bare_form(whole, decorator))
     return cast(_Function, whole)
 
 
-def _let_compiled_code_call(whole: Any, decorator: Callable[..., Any]) -> None:
-    """Give a function of numba a second form, for calls from compiled code, made when it is first needed.
+def _bare_form(whole: Any, decorator: Callable[..., Any]) -> Callable[[], Any]:
+    """Return what makes the form of a function for calls from compiled code.
 
     It lacks the wrapper for calls from Python, which would take a tenth of the time to compile and which most kernels
     never need.
     """
-
-    @once
-    def bare() -> Any:
-        return _kept_on_disk(partial(decorator, no_cpython_wrapper=True), _renamed(whole.py_func, "_bare"))
-
-    def call_template(types: tuple[Any, ...], keywords: dict[str, Any]) -> Any:
-        return bare().get_call_template(tuple(map(unliteral, types)), keywords)  # not one more form for f(0)
-
-    whole.get_call_template = call_template
-    whole.get_overload = lambda signature: bare().get_overload(signature)
+    return once(lambda: _kept_on_disk(partial(decorator, no_cpython_wrapper=True), _renamed(whole.py_func, "_bare")))
 
 
 def _renamed(function: FunctionType, suffix: str) -> FunctionType:
@@ -136,23 +126,11 @@ def specialise(
     the module are put in as literals, so that branches on them that are not taken are not compiled either.
     """
     plain = cast(FunctionType, loop)
-    with global_compiler_lock:
+    with numba_parts.lock:
         code = _with_literals(plain, law)
     copy = FunctionType(code, {**plain.__globals__, "law": law}, loop.__name__)
     copy.__module__, copy.__qualname__ = loop.__module__, f"{loop.__qualname__}_{law.__name__}"
     return njit(copy, inline=inline, small=small)
-
-
-class _Addressed:
-    """A compiled function by its address; numba finds its type sooner than that of its own ``CompileResultWAP``."""
-
-    def __init__(self, compiled: Any) -> None:
-        self._numba_type_ = FunctionPointer(compiled.signature)
-        self._address = compiled.library.get_pointer_to_function(compiled.fndesc.llvm_cfunc_wrapper_name)
-        self._compiled = compiled  # kept for the code
-
-    def __wrapper_address__(self) -> int:
-        return int(self._address)
 
 
 _ARGUMENTS: dict[tuple[Any, bytes], Any] = {}
@@ -166,12 +144,12 @@ def as_argument(function: Callable[..., Any], *arguments: object) -> Callable[..
     """
     if _config.DISABLE_JIT:
         return function
-    key = function, compute_fingerprint(cast(Any, arguments))  # their types, sooner found than by ``typeof``
-    with global_compiler_lock:
+    key = function, numba_parts.types_of(arguments)  # their types, sooner found than by ``typeof``
+    with numba_parts.lock:
         if key not in _ARGUMENTS:
             plain = cast(Any, function).py_func
             called = _kept_on_disk(partial(numba.njit, no_cpython_wrapper=True), _renamed(plain, "_argument"))
             types = tuple(map(cast(Any, numba.typeof), arguments))
             called.compile(types)
-            _ARGUMENTS[key] = _Addressed(called.overloads[types])
+            _ARGUMENTS[key] = numba_parts.Addressed(called.overloads[types])
     return cast(Callable[..., Any], _ARGUMENTS[key])

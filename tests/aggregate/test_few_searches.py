@@ -28,14 +28,14 @@ def test_without_adhesion_one_evaluation_finds_a_contact(name: str) -> None:
 def test_without_adhesion_three_do_where_rows_differ_or_profiles_are_pieced(name: str) -> None:
     searches, evaluations, _ = in_the_sum(name, 0.0, math.inf)
     assert searches <= 0.1, "next to a kink"
-    assert 2.0 <= evaluations <= 3.3
+    assert 2.0 <= evaluations <= 3.45, "the contacts that steps do not find are evaluated once more"
 
 
 @pytest.mark.parametrize("name", BY_PROFILE)
 def test_three_find_a_contact_with_jkr(name: str) -> None:
     searches, evaluations, once = in_the_sum(name, WORK, math.inf)
     assert searches <= 0.02
-    assert 1.9 <= evaluations <= 3.1
+    assert 1.9 <= evaluations <= 3.15
     assert 0.0 < once <= (60.0 if SHAPES[name].shared else 30.0), "nodes that contacts need, and no more"
 
 

@@ -15,7 +15,7 @@ from roughmdr.interaction.contacts import coupled_kernels
 from roughmdr.interaction.interface import Asperities, Contacts, CoupledKernels
 from roughmdr.kernels.adhesion import Adhesion
 from roughmdr.kernels.choose import choose
-from roughmdr.kernels.interface import Columns, Material
+from roughmdr.kernels.interface import Columns
 from roughmdr.shapes import SHAPES
 from roughmdr.shapes.base import Shape
 
@@ -42,7 +42,7 @@ def one(shape: Shape) -> tuple[CoupledKernels, Asperities]:
         np.array([width]), np.array([rise]), np.atleast_1d(params)[None] if np.ndim(params) else np.array([params])
     )
     law = coupled_kernels(choose(shape.name, Adhesion(), columns.params))
-    made = law.prepare(Material(1.0, 0.0, math.inf), columns, 0, 1, 0.0, math.inf)
+    made = law.prepare(law.material(1.0, Adhesion()), columns, 0, 1, 0.0, math.inf)
     (depth, _), size, _, _ = law.scales(1.0, 0.0, width, rise, law.params_of(made, 0))
     return law, Asperities(np.zeros(1), np.array([depth]), np.array([size]), made)
 

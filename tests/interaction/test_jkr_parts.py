@@ -24,7 +24,7 @@ from roughmdr.interaction.jkr.mixing import Mixing
 from roughmdr.interaction.jkr.tangent import Tangent
 from roughmdr.kernels.adhesion import Adhesion
 from roughmdr.kernels.choose import choose
-from roughmdr.kernels.interface import Columns, Material
+from roughmdr.kernels.interface import Columns
 from roughmdr.shapes.base import Shape
 
 Floats = NDArray[np.float64]
@@ -48,7 +48,7 @@ def kernels_of(shape: Shape, count: int) -> tuple[JkrKernels, Asperities]:
     own = own if np.ndim(params) else own[0]
     columns = Columns(np.full(count, width), np.full(count, rise), np.repeat(own, count, axis=0))
     law = jkr_kernels(choose(shape.name, Adhesion(), columns.params))
-    made = law.prepare(Material(1.0, 0.0, math.inf), columns, 0, count, 0.0, math.inf)
+    made = law.prepare(law.material(1.0, Adhesion()), columns, 0, count, 0.0, math.inf)
     (depth, _), size, _, _ = law.scales(1.0, 0.0, width, rise, law.params_of(made, 0))
     return law, Asperities(np.zeros(count), np.full(count, depth), np.full(count, size), made)
 

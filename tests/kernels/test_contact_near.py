@@ -7,7 +7,7 @@ import pytest
 
 from roughmdr.kernels.adhesion import Adhesion
 from roughmdr.kernels.choose import choose
-from roughmdr.kernels.interface import Columns, Material
+from roughmdr.kernels.interface import Columns
 from roughmdr.kernels.profile.newton import _RTOL
 from roughmdr.shapes import SHAPES
 
@@ -19,7 +19,7 @@ def prepared(name: str) -> tuple[Any, Any]:
     shape = SHAPES[name](**SHAPES[name].example())
     columns = Columns(*(np.asarray(part, dtype=np.float64)[None] for part in shape.nondimensional()))
     law: Any = choose(name, Adhesion(), columns.params).in_sums
-    return law, law.prepare(Material(2e9, 0.0, np.inf), columns, 0, 1, 0.0, np.inf)[0]
+    return law, law.prepare(law.material(2e9, Adhesion()), columns, 0, 1, 0.0, np.inf)[0]
 
 
 def searched(x: float, law: Any, params: Any) -> np.ndarray[Any, Any]:

@@ -9,7 +9,7 @@ import pytest
 import roughmdr as rm
 from roughmdr.kernels.adhesion import Adhesion
 from roughmdr.kernels.choose import choose
-from roughmdr.kernels.interface import Columns, Material
+from roughmdr.kernels.interface import Columns
 from roughmdr.kernels.profile import build
 from roughmdr.kernels.profile.layout import COUNT, FOOT, UNIT
 
@@ -34,8 +34,9 @@ def test_it_is_unstable_below_the_foot_and_stable_above(shape: Any, control: flo
     for log_tabor, log_work in zip(rng.uniform(-2.0, 1.3, 40), rng.uniform(-3.0, 0.5, 40), strict=True):
         work = 10.0**log_work
         strength = 10.0**log_tabor / float(rm.tabor(shape, effective_modulus=E, work=work, strength=1.0))
-        law = choose(shape.name, Adhesion(work, "dugdale", strength), params)
-        row = law.prepare(Material(E, work, strength), Columns(width, rise, params), 0, 1, control, 0.0)[0]
+        adhesion = Adhesion(work, "dugdale", strength)
+        law = choose(shape.name, adhesion, params)
+        row = law.prepare(law.material(E, adhesion), Columns(width, rise, params), 0, 1, control, 0.0)[0]
         foot = row[FOOT]
         assert row[COUNT] == 1.0
         for s in foot * np.linspace(0.01, 0.999, 100 if foot > 0.0 else 0):

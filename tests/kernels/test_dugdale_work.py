@@ -9,7 +9,7 @@ from benchmarks.evaluations import CONTACTS, EXAMPLES, MODULUS, WORK, evaluation
 
 from roughmdr.kernels.adhesion import Adhesion
 from roughmdr.kernels.choose import choose
-from roughmdr.kernels.interface import Columns, Material
+from roughmdr.kernels.interface import Columns
 from roughmdr.kernels.profile.layout import COUNT
 from roughmdr.shapes import SHAPES
 from roughmdr.shapes.power_profiles import profile_of
@@ -47,7 +47,7 @@ def test_both_edges_together_are_those_of_the_search(name: str, strength: float)
     width, rise, params = (np.full(3, each) for each in shape.nondimensional())
     width[2] *= 1.3
     kernels = choose(name, Adhesion(WORK, "dugdale", strength), params)
-    material = Material(MODULUS, WORK, strength)
+    material = kernels.material(MODULUS, Adhesion(WORK, "dugdale", strength))
     rows = kernels.prepare(material, Columns(width, rise, params), 0, 3, 0.0, math.inf)
     np.testing.assert_array_equal(rows[1], rows[0])
     np.testing.assert_array_equal(

@@ -8,7 +8,7 @@ import pytest
 
 from roughmdr.kernels.adhesion import Adhesion
 from roughmdr.kernels.choose import choose
-from roughmdr.kernels.interface import Columns, Material
+from roughmdr.kernels.interface import Columns
 from roughmdr.kernels.profile.layout import COUNT, LAST, LAST_X
 from roughmdr.kernels.profile.newton import _RTOL
 from roughmdr.shapes import SHAPES
@@ -29,7 +29,7 @@ def _prepared(name: str, length: float) -> tuple[Any, Any]:
     adhesion = Adhesion(W * length / 1e-6)
     columns = Columns(*(np.asarray(part, dtype=np.float64)[None] for part in shape.nondimensional()))
     law = choose(name, adhesion, columns.params)
-    return law, law.prepare(Material(E, adhesion.work, adhesion.strength), columns, 0, 1, 0.0, math.inf)[0]
+    return law, law.prepare(law.material(E, adhesion), columns, 0, 1, 0.0, math.inf)[0]
 
 
 @pytest.mark.parametrize("length", [1e-9, 1e-6, 1.0])

@@ -13,7 +13,7 @@ import roughmdr as rm
 from roughmdr.aggregate import loop, totals
 from roughmdr.kernels.adhesion import Adhesion
 from roughmdr.kernels.choose import choose
-from roughmdr.kernels.interface import Columns, Material
+from roughmdr.kernels.interface import Columns
 from roughmdr.kernels.profile.layout import COUNT, FOOT, TOP
 from roughmdr.loading.staircase import staircase
 from roughmdr.shapes import SHAPES, Shape
@@ -59,7 +59,8 @@ class _Subject:
         self.shape, self.effective_modulus, self.adhesion = shape, effective_modulus, Adhesion(work)
         self.columns = Columns(np.array([width]), np.array([rise]), np.asarray(params, dtype=np.float64)[None])
         self.law = choose(shape.name, self.adhesion, self.columns.params)
-        prepared = self.law.prepare(Material(effective_modulus, work, math.inf), self.columns, 0, 1, 0.0, math.inf)
+        material = self.law.material(effective_modulus, self.adhesion)
+        prepared = self.law.prepare(material, self.columns, 0, 1, 0.0, math.inf)
         self.params = self.law.params_of(prepared, 0)
         self.solvable = not (self.law.iterative and self.params[COUNT] == 0.0)
         if self.solvable:

@@ -10,13 +10,15 @@ import math
 import numpy as np
 
 from roughmdr.kernels.interface import Columns, Material
-from roughmdr.kernels.profile import build
 from roughmdr.kernels.profile.layout import CONTROL, COUNT, DEPTH, FOLD, ONSET, RANGE, STRENGTH, UNIT
+from roughmdr.kernels.profile.rows import force_scales as force_scales_of_row
+from roughmdr.kernels.profile.rows import params_of as params_of_row
+from roughmdr.kernels.profile.rows import scales as scales_of_row
 from roughmdr.numerics.arguments import Floats
 from roughmdr.numerics.jit import compiled, njit
 
-scales, force_scales = compiled(build.scales), compiled(build.force_scales)
-params_of = njit(build.params_of, inline=True)
+scales, force_scales = compiled(scales_of_row), compiled(force_scales_of_row)
+params_of = njit(params_of_row, inline=True)
 _KERNEL_ERROR = 1e-12  # of the force, as tested
 _MAX_DEPTH = 2.0**26  # over beta: of a larger depth the roundings would be more than 1e-12 of a closing contact
 

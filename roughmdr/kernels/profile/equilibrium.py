@@ -6,7 +6,7 @@ Notation of ``layout``. All in units of the shape's width and rise.
 import math
 
 from roughmdr.kernels.profile.interface import law
-from roughmdr.kernels.profile.layout import CONTROL, DEPTH, TENSION
+from roughmdr.kernels.profile.layout import CONTROL, DEPTH, ROUNDINGS, TENSION
 from roughmdr.numerics.arguments import Floats
 from roughmdr.numerics.double_double import ROUNDING
 from roughmdr.numerics.gauss import unit_gauss
@@ -72,7 +72,7 @@ def adhesion_terms(a: float, params: Floats) -> tuple[float, float]:
 
 def relative_errors(params: Floats) -> tuple[float, float]:
     """Errors of the force and of the indentation, from the roundings of the profile and of dl."""
-    error = ROUNDING * law.roundings(params)
+    error = ROUNDING * params[ROUNDINGS]
     return error, error
 
 

@@ -10,6 +10,7 @@ import math
 from roughmdr.kernels.profile.interface import law
 from roughmdr.kernels.profile.layout import (
     CONTROL,
+    CORNER,
     COUNT,
     DEPTH,
     FOLD,
@@ -103,10 +104,10 @@ def list_branches(tension: float, params: Floats) -> int:
         peak, dip = law.softening_interval(i, params)
         if not stable and peak > low and law.steepness(peak, params) >= tension:
             foot, stable = law.steepness_crossing(low, peak, tension, params), True
-        elif not stable and law.corner:
+        elif not stable and params[CORNER] > 0.0:
             foot, stable = peak, True
         if stable and law.steepness(dip, params) < tension:
-            beyond = peak * (1.0 + _NEXT) if law.corner else peak
+            beyond = peak * (1.0 + _NEXT) if params[CORNER] > 0.0 else peak
             count = law.note_branch(count, foot, law.steepness_crossing(beyond, dip, tension, params), params)
             stable = False
         low = dip

@@ -10,7 +10,7 @@ import math
 import numpy as np
 
 from roughmdr.kernels.profile.interface import law
-from roughmdr.kernels.profile.layout import CONTROL, COUNT, DEPTH, LAST, LAST_X, TENSION
+from roughmdr.kernels.profile.layout import CONTROL, COUNT, DEPTH, FLAT, LAST, LAST_X, TENSION
 from roughmdr.numerics.arguments import Floats
 from roughmdr.numerics.jit import compiled
 from roughmdr.numerics.vector_math import binade_cell
@@ -108,7 +108,7 @@ def fill_first_node(params: Floats) -> float:
         law.fill_node(0, 1.0, params)
         return float(law.extrapolate_node(1, math.log(y), params))
     params[law.first_node] = foot
-    slope = law.control_at(foot, params)[1] if foot > 0.0 or law.flat else math.inf
+    slope = law.control_at(foot, params)[1] if foot > 0.0 or params[FLAT] > 0.0 else math.inf
     if foot == 0.0 or slope > _CORNER * params[DEPTH] / foot:
         params[law.first_node + 1] = 0.0
         way = (law.x_of_y(y, params)[0] - params[LAST_X]) * params[DEPTH]
@@ -141,7 +141,8 @@ def node_beyond(indentation: float, params: Floats) -> int:
 def fill_nodes(last: int, rows: Floats) -> None:
     """Fill in the nodes up to ``last`` of all rows, each for all at a time, so that no row waits for another."""
     count = rows.shape[0]
-    t, error, per = np.empty(count), np.empty(count), np.empty(count)
+    found = np.empty((3, count))
+    t, error, per = found[0], found[1], found[2]
     for i in range(count):
         t[i] = law.fill_first_node(rows[i]) if rows[i, COUNT] > 0.0 else 0.0
     for node in range(1, last + 1):
@@ -151,8 +152,7 @@ def fill_nodes(last: int, rows: Floats) -> None:
             for i in range(count):
                 t[i] = law.extrapolate_node(node, step, rows[i])
         for _ in range(_STEPS):
-            for i in range(count):
-                t[i], error[i], per[i] = law.one_step(t[i], law.x_of_y(y, rows[i])[0], rows[i])
+            law.one_step_all(y, found, rows)
             unsure = 0
             for i in range(count):
                 unsure += error[i] > _MAX_ERROR
@@ -166,3 +166,10 @@ def fill_nodes(last: int, rows: Floats) -> None:
             trusted = (error[i] < _MAX_ERROR) & (rows[i, CONTROL] == 0.0)
             if not trusted and rows[i, COUNT] > 0.0:
                 law.fill_node(node, y, rows[i])
+
+
+def one_step_all(y: float, found: Floats, rows: Floats) -> None:
+    """Do ``one_step`` to y for all rows; ``found`` has their states, then the bounds of the errors and the slopes."""
+    t, error, per = found[0], found[1], found[2]
+    for i in range(rows.shape[0]):
+        t[i], error[i], per[i] = law.one_step(t[i], law.x_of_y(y, rows[i])[0], rows[i])

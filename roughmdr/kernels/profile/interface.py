@@ -24,6 +24,10 @@ class ProfileKernels(Kernels):
     breakpoint: Callable[[int, Floats], tuple[float, float]]
     precompute: Callable[[Floats], None]
     roundings: Kernel
+    softens: bool
+    """Whether sqrt(a) g'(a) may fall, so that there may be more than one branch with adhesion."""
+    note_shape: Callable[[Floats], None]
+    """params -> None; fills in what is known of the shape, first what ``precompute`` does."""
     elastic_integral: Kernel
     zone_integrals: Callable[..., tuple[float, float]]
     corner: bool
@@ -67,6 +71,7 @@ class ProfileKernels(Kernels):
     repeated: Callable[[Columns, int], bool]
     node_beyond: Callable[[float, Floats], int]
     fill_nodes: Callable[[int, Floats], None]
+    one_step_all: Callable[[float, Floats, Floats], None]
     fill_params: Callable[..., None]
 
     two_steps: Callable[..., tuple[float, float, float]]

@@ -8,22 +8,23 @@ Under adhesion with a range the state is s (``dugdale.equilibrium``) in place of
 MAX_BRANCHES = 8
 CANCELLED = 1e-4  # of the depth: nearer to a foot at t = 0, the corner of a flat, four digits are lost
 
-# Indices from the end of a row: the parameters of the shape stand at its beginning.
+# Indices from the end of a row: the parameters of the shape stand at its beginning. What a visit reads is on one cache
+# line or two.
 TENSION = -1
-CONTROL = -2  # 0: fixed grips, 1: dead load
-DEPTH = -3  # distance of the lowest foot below first touch, in the controlled quantity; 1 without adhesion
-FOLD = -4  # t of the lowest foot
-COUNT = -5  # number of stable branches; 0 where they are too many, or not representable
-LAST, LAST_X = -6, -7  # the foot of the last branch: its t and its x, the distance to the lowest foot over DEPTH
-ONSET = -8  # the x at which contact, or attraction, begins when the surfaces approach
-STRENGTH, RANGE = -9, -10  # 2 sigma0/E* width/rise and w/sigma0 over rise, where adhesion has a range
-JUNCTION, UNIT = -11, -12  # the cohesive radius over width where contact begins, and t over s - 1 (s - 2 on a flat)
-NUMBER = -13  # what tells shapes of one kind apart, besides width and rise: the first of the row once more
-NEAR = (
-    -14
-)  # relative to t: nearer than this to a foot the slope is integrated, as the difference of values is less precise
-FOOT, TOP = NEAR - MAX_BRANCHES, NEAR - 2 * MAX_BRANCHES  # t of the first
-FOOT_X, TOP_X = NEAR - 3 * MAX_BRANCHES, NEAR - 4 * MAX_BRANCHES  # x of the first
+DEPTH = -2  # distance of the lowest foot below first touch, in the controlled quantity; 1 without adhesion
+COUNT = -3  # number of stable branches; 0 where they are too many, or not representable
+LAST, LAST_X = -4, -5  # the foot of the last branch: its t and its x, the distance to the lowest foot over DEPTH
+NEAR = -6  # of t: nearer than this to a foot the slope is integrated, as the difference of values is less precise
+NUMBER = -7  # what tells shapes of one kind apart, besides width and rise: the first of the row once more
+ROUNDINGS = -8  # as ``shapes.profile.Profile.roundings``
+CONTROL = -9  # 0: fixed grips, 1: dead load
+FOLD = -10  # t of the lowest foot
+ONSET = -11  # the x at which contact, or attraction, begins when the surfaces approach
+STRENGTH, RANGE = -12, -13  # 2 sigma0/E* width/rise and w/sigma0 over rise, where adhesion has a range
+JUNCTION, UNIT = -14, -15  # the cohesive radius over width where contact begins, and t over s - 1 (s - 2 on a flat)
+FUNCTIONS = -16  # the address of the functions of the shape, for kernels that are compiled for any; else 0
+CORNER, FLAT, BRANCHED = -17, -18, -19  # 1 where the shape has a corner, a flat, or more than one branch with adhesion
+FOOT, TOP, FOOT_X, TOP_X = (BRANCHED - rows * MAX_BRANCHES for rows in range(1, 5))  # t, and x, of the first
 
 
 def first_node(octaves: int, split: int, numbers: int) -> int:
