@@ -2,7 +2,7 @@
 
 from studies.coupling.costs import COUNTS
 from studies.coupling.measure import measure
-from studies.coupling.methods import FRACTIONS, GRIDS, QUICK_FRACTIONS
+from studies.coupling.methods import GRIDS
 from studies.coupling.report import draw, report
 from studies.study import Study
 
@@ -12,8 +12,7 @@ STUDY = Study(
     measure,
     draw,
     report,
-    f"up to {max(COUNTS[True])} of {max(COUNTS[False])} asperities, "
-    f"{QUICK_FRACTIONS.size} of {FRACTIONS.size} contact fractions, one error; "
+    f"up to {max(COUNTS[True])} of {max(COUNTS[False])} asperities, one error; "
     f"boundary elements of up to {max(GRIDS[True])} of {max(GRIDS[False])} points a side",
 )
 

@@ -19,7 +19,6 @@ from studies.versus_bem.judge import without_grid
 from studies.versus_bem.measure import MODULUS, separations
 
 FRACTIONS = np.array([0.01, 0.02, 0.03, 0.05])
-QUICK_FRACTIONS = FRACTIONS[:2]
 GRIDS = {False: (64, 128, 256, 512, 1024), True: (64, 128)}
 """Points a side of boundary elements; those of twice the finest are what all are held against."""
 _PAIRWISE = "pairwise, order {order}"
@@ -68,7 +67,7 @@ def by_boundary_elements(ensemble: xr.Dataset, separation: Floats, points: int) 
 def compare(quick: bool) -> list[Point]:
     """Return all methods on separated paraboloids of lognormal radii."""
     ensemble = Case("hard_core 0.7", "lognormal", 100, 0.2, 256, 1).generate()
-    along = separations(ensemble, QUICK_FRACTIONS if quick else FRACTIONS)
+    along = separations(ensemble, FRACTIONS)
     grids = {points: by_boundary_elements(ensemble, along, points) for points in GRIDS[quick]}
     fine, coarse = (grids[points][0] for points in sorted(grids, reverse=True)[:2])
     exact = without_grid(fine, coarse)
