@@ -1,5 +1,5 @@
 # make demo: set up, compute a rough adhesive contact, show it.   make test: set up, run every check, build the docs.
-# make test-all: the long forms of tests as well, some 40 minutes more.
+# make test-all: the long forms of tests as well, about an hour more.
 # make docs: build the documentation into docs/_build/html, examples and all.
 # make studies: measure error against run time, the extremes, and what leaving out saves, in reduced forms that say what
 # they leave out, some seven minutes; report in results/studies. make studies-full: all of it, about an hour.
@@ -70,8 +70,8 @@ lock:
 	uv pip compile --universal --generate-hashes --python-version 3.11 --no-header --no-annotate \
 	  --group dev pyproject.toml -o requirements.lock
 
-# Test, tag a version, build its wheel and source archive into dist/; nothing is uploaded: make release VERSION=0.1.0.
-release: test
+# Test at length, tag a version, build its wheel and source archive into dist/; nothing is uploaded: make release VERSION=0.1.0.
+release: test-all
 	$(BIN)/python .ci/release.py $(VERSION)
 
 clean:
