@@ -7,7 +7,8 @@ PYTHON ?= python3
 VENV   := .venv
 BIN    := $(VENV)/bin
 READY  := $(VENV)/ready
-TESTS  := $(BIN)/python -m pytest -n auto
+# Workers share the cores: threads of BLAS in each would wait for each other.
+TESTS  := OPENBLAS_NUM_THREADS=1 $(BIN)/python -m pytest -n auto
 UNCOMPILED := $(addprefix tests/,asperity kernels numerics shapes springs \
   $(addsuffix .py,$(addprefix aggregate/test_,few_searches machine shapes_in_ensembles sum) \
   $(addprefix interaction/test_,close contacts green jkr_parts jkr_shapes)))
