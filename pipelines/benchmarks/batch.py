@@ -71,7 +71,7 @@ def measure(quick: bool) -> xr.Dataset:
         by_cell(*((200, 1) if quick else (10_000, 3))),
         by_scheduler(*((60, 1, (2,)) if quick else (500, 3, (1, 2)))),
         by_workers(*((2_000, 24, 1) if quick else (100_000, 32, 5))),
-        by_asperity(*((20_000, 1) if quick else (1_000_000, 3))),
+        by_asperity(*((200_000, 1) if quick else (1_000_000, 3))),
         by_realizations([1_000, 10_000] if quick else [10_000, 100_000, 1_000_000]),
     ]
     result = xr.merge(parts, combine_attrs="no_conflicts")
