@@ -7,22 +7,27 @@ PYTHON ?= python3
 VENV   := .venv
 BIN    := $(VENV)/bin
 READY  := $(VENV)/ready
+# Images of containers often forbid bytecode; each of many processes would compile all that it imports anew.
+export PYTHONDONTWRITEBYTECODE :=
 # Workers share the cores: threads of BLAS in each would wait for each other.
 TESTS  := OPENBLAS_NUM_THREADS=1 $(BIN)/python -m pytest -n auto
 UNCOMPILED := $(addprefix tests/,asperity kernels numerics shapes springs \
   $(addsuffix .py,$(addprefix aggregate/test_,few_searches machine shapes_in_ensembles sum) \
   $(addprefix interaction/test_,close contacts green jkr_parts jkr_shapes)))
 
-.PHONY: demo test test-all docs studies studies-full setup lint lock release clean
+.PHONY: demo test test-all tests docs studies studies-full setup lint lock release clean
 
 demo: setup
 	@mkdir -p results
 	@$(BIN)/roughmdr run pipelines/scenes/rubber_on_glass.toml -o results/rubber_on_glass.nc --fresh
 	@$(BIN)/roughmdr plot results/rubber_on_glass.nc -o results/rubber_on_glass.png --with-expected
 
-# Style, types and the docs, side by side; the tests; and those of kernels, sums and shapes where nothing is compiled.
+# Style and types, the docs and the tests, side by side.
 test: setup
-	@$(MAKE) --no-print-directory -j2 --output-sync=target lint docs
+	@$(MAKE) --no-print-directory -j3 lint docs tests
+
+# The tests, and those of kernels, sums and shapes again where nothing is compiled.
+tests: setup
 	$(TESTS) --dist loadfile
 	NUMBA_DISABLE_JIT=1 $(TESTS) --dist loadfile $(UNCOMPILED)
 
