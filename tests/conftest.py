@@ -1,9 +1,11 @@
 """What all tests have in common: which are long forms, what a run has compiled, and batches to be disturbed."""
 
+import random
 import re
 import signal
 import time
-from collections.abc import Iterable
+from collections import defaultdict
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -80,8 +82,22 @@ def _shapes_in(value: Any) -> set[str]:
     return set()
 
 
-def pytest_collection_modifyitems(items: Iterable[pytest.Item]) -> None:
-    """Mark tests of other shapes as long forms where functions are compiled, which takes the most of their time."""
+def _all_but_few(cases: list[pytest.Item], count: int, draw: random.Random) -> list[pytest.Item]:
+    """Return all cases but one drawn from each of so many equal parts."""
+    ends = [len(cases) * i // count for i in range(count + 1)]
+    stay = {draw.randrange(begin, end) for begin, end in pairwise(ends) if begin < end}
+    return [item for i, item in enumerate(cases) if i not in stay]
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Mark long forms: most cases of a test marked ``few(count)``; where functions are compiled, other shapes."""
+    tests = defaultdict(list)
+    for item in items:
+        if item.get_closest_marker("few") and not item.get_closest_marker("large"):
+            tests[item.nodeid.partition("[")[0]].append(item)
+    for name, cases in tests.items():
+        for item in _all_but_few(cases, cases[0].get_closest_marker("few").args[0], random.Random(name)):
+            item.add_marker("large")
     for item in [] if numba.config.DISABLE_JIT else items:
         if item.path.relative_to(Path(__file__).parent).parts[0] in COMPILING and isinstance(item, pytest.Function):
             given = item.callspec.params.values() if hasattr(item, "callspec") else ()

@@ -94,6 +94,7 @@ for batch in ({"realizations": 2}, {"estimator": "expected"}):
 """
 
 
+@pytest.mark.large
 @pytest.mark.parametrize(("section", "code"), [("adhesion model", _DMT), large("curve variable", _PERIMETER)])
 def test_the_patches_of_the_guide_work(section: str, code: str, tmp_path: Path) -> None:
     shutil.copytree(ROOT / "roughmdr", tmp_path / "roughmdr", ignore=shutil.ignore_patterns("__pycache__"))

@@ -240,6 +240,7 @@ def test_long_and_odd_names_of_files(folder: Path) -> None:
         assert "Traceback" not in done.stderr
 
 
+@pytest.mark.large
 def test_nobody_needs_to_listen(folder: Path) -> None:
     command = " ".join(["'" + part.replace("'", "'\\''") + "'" for part in [*ROUGHMDR, "run", "small.toml", "-o"]])
     for name, redirection in (("a.nc", "2>&-"), ("b.nc", "2>/dev/full")):

@@ -124,6 +124,7 @@ print("loaded:", *sorted(name for name in sys.modules if "." not in name))
 _ALWAYS_HEAVY = {"dask", "matplotlib", "xarray", "pandas", "scipy", "numba"}
 
 
+@pytest.mark.few(3)
 @pytest.mark.parametrize(
     ("arguments", "may_load"),
     [

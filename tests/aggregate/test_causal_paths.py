@@ -71,6 +71,7 @@ def check_parts(
     return whole
 
 
+@pytest.mark.few(8)
 @pytest.mark.filterwarnings("ignore::UserWarning")
 @pytest.mark.parametrize("control", CONTROLS)
 @pytest.mark.parametrize("coupling", COUPLINGS)
@@ -81,6 +82,7 @@ def test_without_adhesion(coupling: str, control: str) -> None:
     )
 
 
+@pytest.mark.few(3)
 @pytest.mark.filterwarnings("ignore::UserWarning")
 @pytest.mark.parametrize("control", CONTROLS)
 @pytest.mark.parametrize("adhesion", ["jkr", "dugdale"])
@@ -90,6 +92,7 @@ def test_independent_with_adhesion(adhesion: str, control: str) -> None:
     check_parts(placed(rng, 10, SIDE), control, walk(rng, control, adhesive=True), rng, **given)
 
 
+@pytest.mark.few(2)
 @pytest.mark.filterwarnings("ignore::UserWarning")
 @pytest.mark.parametrize("control", CONTROLS)
 @pytest.mark.parametrize("order", [large(1), 2])
@@ -158,6 +161,7 @@ def check_parts_of_scene(path: dict[str, Any], key: str, end: int, atol_of_error
 ESTIMATORS = [{"estimator": "expected"}, {"realizations": 2}]
 
 
+@pytest.mark.few(2)
 @pytest.mark.filterwarnings("ignore::UserWarning")
 @pytest.mark.parametrize("control", ["separation", "force", "remote"])
 @pytest.mark.parametrize("adhesion", [None, {"model": "jkr", "work": "50 mJ/m^2"}], ids=["without", "jkr"])

@@ -84,6 +84,7 @@ def test_a_step_without_equilibrium_is_marked(keep: str, tmp_path: Path, monkeyp
             assert (np.isnan(force).sum(axis=1) <= found.marked_steps.to_numpy()).all()
 
 
+@pytest.mark.large
 def test_far_into_the_surface_steps_are_marked_and_have_no_value() -> None:
     path = {"separation": ["0 um", "-1 um", "-3 um"]}
     found = rm.run(coupled(path=path, batch=None))

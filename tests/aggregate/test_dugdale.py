@@ -60,6 +60,7 @@ class Walk:
         return float(self.force[self.at]) if self.at >= 0 else 0.0
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize("tabor", [0.1, 0.6, 1.5, 20.0])
 def test_a_winding_path_is_that_of_the_plain_walk(tabor: float) -> None:
     rng = np.random.default_rng(5)
@@ -350,6 +351,7 @@ def test_a_sweep_over_the_range_from_the_command_line(tmp_path: Path) -> None:
     assert any("range of the adhesion" in line for line in make_plan(read(table)).left_out)
 
 
+@pytest.mark.large
 def test_the_study_goes_from_dmt_to_jkr(tmp_path: Path) -> None:
     result = study.measure(quick=True)
     force = -result.pull_off_force / (np.pi * study.WORK * study.RADIUS)

@@ -39,6 +39,7 @@ def test_three_find_a_contact_with_jkr(name: str) -> None:
     assert 0.0 < once <= (60.0 if SHAPES[name].shared else 30.0), "nodes that contacts need, and no more"
 
 
+@pytest.mark.few(5)
 @pytest.mark.parametrize("name", [*EXAMPLES, *OTHERS])
 def test_few_more_find_one_and_its_zone(name: str) -> None:
     searches, evaluations, once = in_the_sum(name, WORK, 2e5)

@@ -7,7 +7,7 @@ import numba
 import numpy as np
 import pytest
 import xarray as xr
-from forms import large
+from forms import large, large_where_compiled
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from mpmath import mp, mpf
@@ -45,6 +45,7 @@ def test_the_fold_in_the_units_of_the_contact() -> None:
     assert fold(1.0) == pytest.approx((0.736965161821414, 0.429471301717, -0.307493860104), abs=1e-12)
 
 
+@pytest.mark.few(12)
 @pytest.mark.parametrize(("radius", "modulus", "work"), UNITS)
 @pytest.mark.parametrize("kappa", np.geomspace(1e-4, 1e4, 20))
 def test_one_contact_on_a_spring_lets_go_at_the_fold_of_both(radius, modulus, work, kappa) -> None:
@@ -131,6 +132,7 @@ def compare(height, radius, modulus, work, stiffness, controls) -> None:
     )
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("ratio", [0.0, large(0.02), 0.5, large(20.0)])
 @pytest.mark.parametrize("height", [large([0.0, 0.0]), [0.0, -0.3], [0.2, 0.0, -1.5]])
 def test_two_and_three_contacts_on_nested_loops(height, ratio) -> None:
@@ -163,6 +165,7 @@ def random_paths(data) -> tuple:
     return height, radius, modulus, work, stiffness, controls
 
 
+@large_where_compiled
 @given(st.data())
 @settings(deadline=None, max_examples=3, derandomize=True)
 def test_random_ensembles_follow_the_slow_and_plain_path(data) -> None:

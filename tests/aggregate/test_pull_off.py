@@ -68,6 +68,7 @@ def rough(kind: str, count: int, seed: int, std: float = 1e-7) -> xr.Dataset:
     return ensemble(rng.normal(0.0, std, count), shape=kind, **columns)
 
 
+@pytest.mark.few(3)
 @pytest.mark.filterwarnings("ignore::roughmdr.errors.LimitWarning")
 @pytest.mark.parametrize(("kind", "extra"), CASES, ids=lambda each: each if isinstance(each, str) else "".join(each))
 @pytest.mark.parametrize(("count", "steps"), [(1, 3), large(2, 6), (7, 9), large(25, 40)])

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 import xarray as xr
+from forms import large_where_compiled
 from scenes import scene
 
 import roughmdr as rm
@@ -54,6 +55,7 @@ def test_auto_takes_jkr_where_its_pull_off_is_right_enough(tabor: float, error: 
     xr.testing.assert_identical(law, rm.indent(TIP, **SOFT, indentation=depth, adhesion=taken, strength=strength))
 
 
+@large_where_compiled
 def test_auto_sees_a_flat_that_the_tabor_number_does_not() -> None:
     """JKR is off by 1 % at a Tabor number of 3 for a paraboloid, and of 7 for a punch."""
     punch = rm.RoundedPunch(flat_radius=1e-5, edge_radius=1e-7)
@@ -71,6 +73,7 @@ def test_auto_without_adhesion_is_hertz_and_where_jkr_has_no_contact_dugdale() -
         rm.indent(TIP, **SOFT, indentation=1e-9, adhesion="auto", range="1 nm", method="springs")
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize("tabor", [0.3, 3.0, 300.0, 3e4])
 def test_the_load_of_an_ensemble_takes_the_model_that_a_run_takes(tabor: float) -> None:
     adhesion = {"model": "auto", "work": W, "strength": strength_at(tabor), "error": 0.05}

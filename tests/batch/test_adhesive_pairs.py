@@ -48,6 +48,7 @@ def test_results_are_bit_for_bit_those_of_any_number_of_workers_and_of_a_resume(
     assert float(one.marked_steps.max()) == 0.0
 
 
+@pytest.mark.large
 def test_energy_is_lost_at_jumps_only(tmp_path: Path) -> None:
     """With twice the steps jumps lose as much, to where they are located; the loss never falls."""
     fine = {"separation": {**PATH["separation"], "steps": 23}, "unload": True}
@@ -59,6 +60,7 @@ def test_energy_is_lost_at_jumps_only(tmp_path: Path) -> None:
     np.testing.assert_array_equal(first.avalanche_count, second.avalanche_count)
 
 
+@pytest.mark.large
 def test_commands_foresee_and_describe_them(tmp_path: Path) -> None:
     (tmp_path / "scene.toml").write_text(tomli_w.dumps(sticky()))
 

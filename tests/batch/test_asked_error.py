@@ -323,6 +323,7 @@ def test_the_outcome_depends_on_no_workers_and_no_tasks(keep: str) -> None:
         assert_same(split(table, runs_per_task, workers), one)
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize("keep", ["curves", "statistics"])
 @pytest.mark.parametrize("after", [1, 4, 9])
 def test_the_outcome_depends_on_no_interruption(
@@ -383,6 +384,7 @@ def test_a_larger_error_drops_no_realisations_unasked(keep: str, tmp_path: Path)
         go(asking(1e-4, None, output=kept(keep)), out)
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize("keep", ["curves", "statistics"])
 @pytest.mark.parametrize("fails", [(3,), range(FIRST)])
 def test_a_cell_with_a_failure_is_left_as_it_is(

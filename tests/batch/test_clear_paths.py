@@ -53,6 +53,7 @@ def ends(result: xr.Dataset) -> xr.Dataset:
     return result.isel(step=[0, -1])
 
 
+@pytest.mark.few(4)
 @pytest.mark.parametrize("adhesion", [None, JKR, pytest.param(DUGDALE, marks=pytest.mark.large)], ids=str)
 @pytest.mark.parametrize("shape", SHAPES)
 @pytest.mark.filterwarnings("ignore")
@@ -100,6 +101,7 @@ def test_the_clear_start_is_the_quantile_of_all_realisations() -> None:
     assert chance < 1e-3
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("alpha", [1.6, 5.0, 1e3])
 def test_the_clear_start_of_a_gaussian_surface_is_exceeded_by_its_chance(alpha: float) -> None:
     from scipy.integrate import quad
@@ -154,6 +156,7 @@ def test_more_realisations_reuse_those_that_are_there(tmp_path: Path) -> None:
     np.testing.assert_array_equal(before.separation, other.separation)
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize("adhesion", [None, JKR, large(DUGDALE)], ids=str)
 @pytest.mark.parametrize(
     "target", [{"contact_fraction": 0.02}, large({"contact_fraction": 1e-4}), {"pressure": "2 kPa"}]
@@ -232,6 +235,7 @@ def test_of_a_file_loading_jumps_over_the_target(tmp_path: Path) -> None:
         rm.run({**table, "asperities": {"source": "file", "file": str(tmp_path / "bare.nc")}})
 
 
+@pytest.mark.large
 def test_sweeps(tmp_path: Path) -> None:
     table = clear({"contact_fraction": 0.02}, batch={"realizations": 2})
     fractions = rm.run({**table, "sweep": {"path.separation.stop.contact_fraction": [0.01, 0.02]}})

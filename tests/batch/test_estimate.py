@@ -39,6 +39,7 @@ def test_a_scene_is_never_run_beyond_its_own_size() -> None:
     assert work(1.0, asperities=small, path={"separation": ["2 um", "1 um", "0 um"]}) == 90
 
 
+@pytest.mark.large
 def test_of_asperities_with_a_table_each_some_are_run(tmp_path: Path) -> None:
     """They are a part of the whole, tables and all: a plan is not refused where a run is not."""
     radius = np.linspace(1e-7, 2e-5, 20)
@@ -71,6 +72,7 @@ def test_what_a_state_costs_bounds_the_number_of_states() -> None:
     assert 0.1 < cost.seconds / seconds(cell, "sampled") < 10.0
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize(("adhesion", "times"), [(None, 17.0), ({"model": "jkr", "work": "1 mJ/m^2"}, 3.6)])
 def test_separations_that_are_sought_take_longer(adhesion: dict[str, Any] | None, times: float) -> None:
     """Pairs that no time is left to run, so that constants tell: in as many steps to the same pressure."""

@@ -35,6 +35,7 @@ def run(estimator: str, **changes: Any) -> xr.Dataset:
     )
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize(
     ("rough", "steps"),
     [

@@ -37,6 +37,7 @@ OTHERS: dict[str, dict[str, Any] | None] = {
 }
 
 
+@pytest.mark.few(4)
 @pytest.mark.parametrize("keep", ["curves", "statistics"])
 @pytest.mark.parametrize("other", OTHERS)
 def test_an_interrupted_fresh_run_goes_on_beside_the_file_that_it_replaces(

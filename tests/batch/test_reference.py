@@ -148,6 +148,7 @@ def test_the_same_bits_for_any_workers(result: xr.Dataset) -> None:
         np.testing.assert_array_equal(again[name], result[name])
 
 
+@pytest.mark.large
 def test_a_result_without_its_reference_is_extended(tmp_path: Path) -> None:
     out = tmp_path / "out.nc"
     rm.run(of_spectrum(), out)
@@ -196,6 +197,7 @@ def test_below_the_mean_height_there_is_no_reference_and_it_is_said() -> None:
     assert np.isfinite(found["reference_force"][0, 0])
 
 
+@pytest.mark.large
 def test_commands_tell_and_draw_it(tmp_path: Path) -> None:
     file, out, picture = tmp_path / "scene.toml", tmp_path / "out.nc", tmp_path / "out.png"
     file.write_text(tomli_w.dumps(of_spectrum()))
@@ -221,6 +223,7 @@ def test_commands_tell_and_draw_it(tmp_path: Path) -> None:
     assert "reference    not drawn" in command("plot", str(plain), "-o", str(picture), "--with-reference")
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize(
     ("changes", "advised"),
     [

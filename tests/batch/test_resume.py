@@ -301,6 +301,7 @@ CHANGES: dict[str, tuple[dict[str, Any], str]] = {
 }
 
 
+@pytest.mark.few(5)
 @pytest.mark.parametrize("keep", ["curves", "statistics"])
 @pytest.mark.parametrize("name", CHANGES)
 def test_another_scene_is_refused(name: str, keep: str, calls: Calls, out: Path) -> None:

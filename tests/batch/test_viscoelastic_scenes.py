@@ -107,6 +107,7 @@ def test_the_same_bits_for_any_number_of_workers(result: xr.Dataset) -> None:
         np.testing.assert_array_equal(result[name], again[name])
 
 
+@pytest.mark.large
 def test_a_target_is_met_by_the_viscoelastic_law() -> None:
     path = {"separation": {"start": "clear", "stop": {"pressure": "1 kPa"}, "steps": 5}}
     given = {"path": path, "batch": {"estimator": "expected"}, "output": {"variables": ["pressure"]}}

@@ -44,6 +44,7 @@ def crowded(**changes: Any) -> Any:
     return rm.generate({**CROWDED, **changes}, seed=3)
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize("side", OVER_HERTZ)
 def test_a_periodic_paraboloid(side: float) -> None:
     expected = 4.0 / 3.0 * OVER_HERTZ[side]
@@ -178,6 +179,7 @@ def test_a_path_without_marks_stays_with_pairs() -> None:
     assert grid.identical(pairs)
 
 
+@pytest.mark.large
 def test_a_run_says_which_grid_it_used() -> None:
     table = scene(
         adhesion=None,

@@ -107,6 +107,7 @@ def test_a_smaller_error_takes_a_finer_grid_up_to_the_largest() -> None:
     assert first_points(1e9, 0.02) == LARGEST_GRID
 
 
+@pytest.mark.large
 def test_an_error_out_of_reach_takes_no_more_than_the_budget(monkeypatch: pytest.MonkeyPatch) -> None:
     """A spike of one point bears the force: finer grids show its spline ever better, and never to 0.1 %."""
     height_map, whole = of(64, periodic=False), refine.solve_on_grid
@@ -130,6 +131,7 @@ def test_an_error_out_of_reach_takes_no_more_than_the_budget(monkeypatch: pytest
     assert found.shape[0] > solved[0].shape[0], "as fine as the budget allows"
 
 
+@pytest.mark.large
 def test_asperities_that_stand_alone_end_beyond_their_contacts() -> None:
     """One paraboloid, and two that hardly feel each other, on a patch that nothing else tells of."""
     for x, times in (([5e-3], 1.0), ([5e-3, 65e-3], 2.0)):

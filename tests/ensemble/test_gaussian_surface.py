@@ -109,6 +109,7 @@ def test_products_of_curvatures_are_the_inverse_of_their_distribution(S: float) 
             assert abs((v - 1) * mp.exp(v) + 1 - u * level) < 3e-14 * v * (v * mp.exp(v))
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize("alpha", ALPHAS[1:])
 def test_the_density_of_height_is_the_integral_over_the_mean_curvature(alpha: float) -> None:
     summits, unit = of_alpha(alpha), math.sqrt(2.5)
@@ -148,6 +149,7 @@ def test_densities_are_finite_everywhere(alpha: float) -> None:
         assert one == pytest.approx(1.0, rel=1e-7)
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("alpha", ALPHAS[1:])
 def test_summits_are_drawn_from_the_densities(alpha: float) -> None:
     """The fractions below each draw, of v and then of the height given v, are evenly spread (M. Rosenblatt, 1952)."""

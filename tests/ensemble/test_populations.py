@@ -101,6 +101,7 @@ def test_two_populations_are_mixed_by_their_share() -> None:
     assert float(section.separation[0]) == pytest.approx(spread, rel=1e-12)
 
 
+@pytest.mark.large
 def test_the_number_of_asperities_follows_poisson() -> None:
     counts = [generate(seed, count=None, density="50 /mm^2").sizes["asperity"] for seed in range(400)]
     assert np.mean(counts) == pytest.approx(50.0, abs=4.0 * np.sqrt(50.0 / 400))

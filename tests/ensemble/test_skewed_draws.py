@@ -86,6 +86,7 @@ def test_only_heavy_tailed_streams_are_followed() -> None:
         assert len(section.heavy_tailed_streams) == streams
 
 
+@pytest.mark.large
 @pytest.mark.parametrize(
     ("spread", "count", "relative", "method"),
     [

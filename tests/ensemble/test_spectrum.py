@@ -36,6 +36,7 @@ def heights(realization: int = 0, seed: int = 1, **changes: Any) -> Floats:
     return section(**changes).height_map(seed, realization).height
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("anisotropy", [1.0, 4.0])
 @pytest.mark.parametrize("unit", [1.0, large(1e3)])
 def test_the_mean_square_is_the_one_given(anisotropy: float, unit: float) -> None:

@@ -38,6 +38,7 @@ def maps(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize(
     ("name", "keys", "most"),
     [
@@ -70,6 +71,7 @@ def test_a_map_takes_little_extra_memory(
     np.testing.assert_allclose(again.height, first.height, rtol=1e-12)
 
 
+@pytest.mark.large
 @given(rows=st.integers(1, 10**5), columns=st.integers(1, 10**8), together=st.integers(1, 10**4))
 def test_blocks_are_all_rows_in_turn(rows: int, columns: int, together: int) -> None:
     parts = list(height_map.blocks(rows, columns, together))

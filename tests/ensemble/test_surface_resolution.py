@@ -26,6 +26,7 @@ def judged(height: np.ndarray) -> tuple[float, dict[str, float | int | str]]:
     return float(np.mean(1.0 / found.parameters["radius"])), found.attrs
 
 
+@pytest.mark.few(4)
 @pytest.mark.parametrize(("longest", "hurst"), [(FINE * 1.1, 0.8), (FINE * 8.0, 0.8), (FINE * 8.0, 0.3)])
 @pytest.mark.parametrize("coarser", [1, 2, 4, 8])
 def test_the_estimate_is_near_the_error_of_the_curvature(longest: float, hurst: float, coarser: int) -> None:

@@ -251,6 +251,7 @@ def rises_of(case: dict[str, object]) -> list[float]:
     return np.asarray(np.quantile(depths, [0.1, 0.5, 0.8])).tolist()
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize("case", CASES, ids=lambda case: "-".join(map(str, (case["shape"], *list(case)[1:]))))
 def test_unloading_against_nested_quadrature(case: dict[str, object]) -> None:
     """At steps at which of the lowest summits some have detached, within the stated error, which is small."""

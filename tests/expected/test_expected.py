@@ -153,6 +153,7 @@ KINKED: list[dict[str, object]] = [
 ]
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("radius", KINKED)
 def test_the_error_bound_holds_where_contacts_detach(
     radius: dict[str, object], monkeypatch: pytest.MonkeyPatch
@@ -299,6 +300,7 @@ def stratified_draws(asked: dict[str, object]) -> tuple[np.ndarray, np.ndarray]:
     return force.mean("realization").to_numpy(), force.std("realization", ddof=1).to_numpy() / 8.0
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("height", [0, {"distribution": "normal", "std": "3 nm"}])
 def test_heights_narrow_beside_the_depths_of_the_folds(height: object) -> None:
     """Which contacts detach depends on their radii, not on their heights: the rule over the radii is split there."""

@@ -49,6 +49,7 @@ def expected(height: dict[str, object], separation: list[float], **more: object)
     return rm.run(scene).isel(realization=0, missing_dims="ignore")
 
 
+@pytest.mark.few(8)
 @pytest.mark.parametrize(("family", "own"), POLES)
 @pytest.mark.parametrize(("loc", "unit"), [(0.0, UM), (1e-3, UM), (-2.0, 1e-2)])
 def test_heights_whose_density_has_a_pole(family: str, own: dict[str, float], loc: float, unit: float) -> None:
@@ -97,6 +98,7 @@ RADII = [
 ]
 
 
+@pytest.mark.few(3)
 @pytest.mark.parametrize(("family", "own"), RADII)
 def test_radii_whose_density_has_a_pole_or_a_heavy_tail(family: str, own: dict[str, float]) -> None:
     law = expected(
@@ -155,6 +157,7 @@ BOUNDED = [
 ]
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize(("family", "own", "spearman"), [*BOUNDED[:2], *(large(*case) for case in BOUNDED[2:])])
 def test_heights_correlated_with_an_extreme_radius_may_all_be_equal(
     family: str, own: dict[str, float], spearman: float
@@ -187,6 +190,7 @@ def test_heights_that_are_all_equal_are_all_counted() -> None:
     np.testing.assert_allclose(law.contact_count, 1000.0, rtol=1e-12)
 
 
+@pytest.mark.large
 @pytest.mark.parametrize("cut", [{"max": "2 um"}, *map(large, [{"max": "4 um"}, {"min": "-2 um"}, {"min": 0.0}])])
 def test_truncated_heights_correlated_with_the_radius(cut: dict[str, object]) -> None:
     """So many draws that their mean is right to 1 %."""
@@ -246,6 +250,7 @@ def of_all_families(seed: int, scenes: int) -> None:
     assert outcomes.count("no reference") <= 0.1 * scenes
 
 
+@pytest.mark.large
 def test_random_distributions_of_scipy() -> None:
     of_all_families(2026, 25)
 

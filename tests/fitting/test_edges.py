@@ -39,6 +39,7 @@ def ends_of_offset(points: int, columns: list[str]) -> tuple[Tip, Floats, list[f
     return tip, measured.separation.to_numpy(), [float(fit[f"offset{end}"]) for end in ("_low", "", "_high")]
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("columns", [["separation", "force"], ["separation", "force", "force_error"]])
 def test_an_offset_stays_where_the_contact_is_made_and_lost_as_measured(columns: list[str]) -> None:
     cut = 0

@@ -21,6 +21,7 @@ def fit_once(case: Case, factors: dict[str, float], **more: Any) -> xr.Dataset:
     return rm.fit(measured, case.scene, list(case.true), set=case.start(factors), **more)
 
 
+@pytest.mark.few(3)
 @pytest.mark.parametrize("factors", [(3.0, 3.0), (3.0, 1 / 3), (1 / 3, 3.0), (1 / 3, 1 / 3)])
 @pytest.mark.parametrize("name", ["adhesive", "elastic", "zero"])
 def test_starts_off_by_three_converge(name: str, factors: tuple[float, float]) -> None:
@@ -138,6 +139,7 @@ def test_a_scene_that_does_not_describe_the_curve_is_told() -> None:
         rm.fit(measured.assign(force_error=1e-6), case.scene, "material.modulus")
 
 
+@pytest.mark.large
 def test_noise_alone_is_not_taken_for_a_fault_of_the_scene() -> None:
     case = CASES["elastic"]
     force = case.force()

@@ -46,6 +46,7 @@ def test_the_jumps_of_both_lie_where_they_are_alone(points: int) -> None:
     assert found.slopes[:, 2] == pytest.approx(np.full(4, -offset.scale), rel=1e-2)
 
 
+@pytest.mark.large
 def test_every_start_leads_to_the_same_jumps() -> None:
     measured, noise = measure(2, 100)
     starts = [{MODULUS: 1.5e6}, {MODULUS: 1e6, WORK: 0.5 * TIP.work}]

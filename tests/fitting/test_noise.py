@@ -37,6 +37,7 @@ def drawn(slopes: NDArray[np.float64], noise: NDArray[np.float64]) -> tuple[NDAr
     return np.array(held), np.array(errors)
 
 
+@pytest.mark.few(3)
 @pytest.mark.parametrize(
     ("kind", "noise"), [each for each in product(SLOPES, NOISES) if each != ("one deciding step", "alternating")]
 )

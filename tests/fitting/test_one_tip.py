@@ -24,6 +24,7 @@ def number(fit: Any, key: str, end: str = "") -> float:
     return float(fit[key.replace(".", "_") + end])
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize(("kind", "free"), [*CASES[:-3], *(large(*case) for case in CASES[-3:])])
 def test_scipy_finds_the_same(kind: str, free: list[str]) -> None:
     """With noise so small that no jump comes near a step, beside which least squares have no minimum."""
@@ -54,6 +55,7 @@ def test_a_sphere_on_a_gel() -> None:
     assert float(fit.evaluation_count) < 60
 
 
+@pytest.mark.large
 def test_a_jump_beside_a_step_is_met() -> None:
     """Noise moves the minimum of the smooth part over steps at which the contact is made or lost."""
     free = [MODULUS, WORK, OFFSET]
@@ -80,6 +82,7 @@ def fit_on_a_gel(
     return rm.fit(measured, tip.scene(), free, set={MODULUS: 1.5e3, WORK: 1e-3} | start)
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize(("noise", "seed"), [(0.01, 1), large(0.01, 2), large(0.01, 3), (0.001, 1)])
 def test_the_jump_lies_where_the_force_shows_it(noise: float, seed: int) -> None:
     """Loading alone, which hardly tells modulus and work apart: the residual is that of the noise, and no more."""
@@ -94,6 +97,7 @@ def test_the_jump_lies_where_the_force_shows_it(noise: float, seed: int) -> None
         assert number(fit, MODULUS) == pytest.approx(number(fits[0], MODULUS), rel=1e-5)
 
 
+@pytest.mark.large
 @pytest.mark.parametrize("depth", [2e-6, large(1e-5)])
 def test_every_start_leads_to_one_minimum(depth: float) -> None:
     down = np.linspace(depth, -depth, 150)
@@ -108,6 +112,7 @@ def test_every_start_leads_to_one_minimum(depth: float) -> None:
         assert found == pytest.approx([found[0]] * len(fits), rel=1e-5, abs=error)
 
 
+@pytest.mark.large
 @pytest.mark.parametrize("seed", [0, large(1), large(2)])
 def test_the_offset_alone_is_the_best_of_all(seed: int) -> None:
     """As no other parameter gives way, each jump that it moves over a step bounds it."""
@@ -123,6 +128,7 @@ def test_the_offset_alone_is_the_best_of_all(seed: int) -> None:
     assert cost(fit.force_fitted.to_numpy()) < min(scanned) * (1.0 + 1e-9)
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("free", COMBINATIONS["jkr"], ids="-".join)
 def test_rows_from_last_to_first_are_doubted(free: list[str]) -> None:
     """Unloading that is saved as if it were loading, whose contact is made where it should be lost."""

@@ -5,6 +5,7 @@ import math
 
 import numpy as np
 import pytest
+from forms import large_where_compiled
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from scenes import ensemble
@@ -91,6 +92,7 @@ def test_it_is_symmetric_and_never_above_a_punch_on_itself(s: float, t: float, a
     assert close.punches(s, t, 1.01 * away) <= value * (1.0 + 1e-9)
 
 
+@large_where_compiled
 def test_the_change_between_both_is_smooth() -> None:
     """The force of two paraboloids over their distance, through both ends of the change, has no jump and no kink."""
 

@@ -57,6 +57,7 @@ def test_independent_contacts_add_up() -> None:
         assert float(law.conductance_radius[1]) > 0.0
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize("distance", DISTANCES)
 def test_two_contacts_are_off_as_their_order_is(distance: float) -> None:
     assert punch_force(distance) / 2.0 == pytest.approx(PAIRS[distance], abs=5e-10)

@@ -90,6 +90,7 @@ def twin(shape: Shape, x: float, curvature: float) -> dict[str, float]:
     return {"load": carried, "radius": a, "lift": depth - x, "second_moment": moment, "tilting": 4.0 / 3.0 * a**3}
 
 
+@pytest.mark.few(12)
 @pytest.mark.parametrize("curvature", CURVATURES)
 @pytest.mark.parametrize("x", INDENTATIONS)
 @pytest.mark.parametrize("name", EXAMPLES)

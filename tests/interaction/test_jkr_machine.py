@@ -39,6 +39,7 @@ def fold(compliance: float) -> tuple[float, float]:
         return float(t - t**4 - c * (2 * t**6 / 3 - t**3)), float(2 * t**6 / 3 - t**3)
 
 
+@pytest.mark.few(5)
 @pytest.mark.parametrize(("radius", "modulus", "work"), UNITS)
 @pytest.mark.parametrize("kappa", [0.03, 1.0, 40.0])
 @pytest.mark.parametrize("count", [1, 2, 3])
@@ -99,6 +100,7 @@ def loss(compliance: float) -> float:
         return float(energy(parted) - energy(made))
 
 
+@pytest.mark.few(5)
 @pytest.mark.parametrize(("radius", "modulus", "work"), UNITS)
 @pytest.mark.parametrize("kappa", [0.1, 1.0, 20.0])
 @pytest.mark.parametrize("count", [1, 2, 3])

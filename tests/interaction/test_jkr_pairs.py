@@ -208,6 +208,7 @@ def check_random(seed: int) -> None:
         assert np.linalg.eigvalsh(0.5 * (radii + radii.T)).min() > 0.0
 
 
+@pytest.mark.few(6)
 @pytest.mark.parametrize("seed", range(24))
 def test_random_contacts_are_in_stable_equilibrium(seed: int) -> None:
     check_random(seed)
@@ -244,6 +245,7 @@ def check_closed(seed: int) -> None:
     assert found.steps[-1].dissipated == pytest.approx(work, rel=1e-8)
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize("seed", range(5))
 def test_cycles_close(seed: int) -> None:
     check_closed(seed)

@@ -86,6 +86,7 @@ def guess(shape: Shape, at: Floats, order: int, *, overlapping: bool = False) ->
 AT = np.array([[0.0, 0.0], [0.04, 0.01], [-0.02, 0.05], [0.05, 0.06]])
 
 
+@pytest.mark.few(4)
 @pytest.mark.parametrize("overlapping", [False, True])
 @pytest.mark.parametrize("name", EXAMPLES)
 def test_factors_of_the_first_order_are_the_tangent(name: str, overlapping: bool) -> None:

@@ -67,6 +67,7 @@ def assert_near(points: Points, side_y: float, periodic: bool, error: float) -> 
     np.testing.assert_allclose(found["potential"], found["of field"], rtol=0.0, atol=1e-12 * found["potential"].max())
 
 
+@pytest.mark.few(5)
 @BOUNDARIES
 @pytest.mark.parametrize("error", ERRORS)
 @pytest.mark.parametrize("side_y", SIDES)
@@ -80,6 +81,7 @@ def test_where_points_lie_does_not_matter(points: Points, periodic: bool) -> Non
     assert_near(points, 1.0, periodic, 3e-7)
 
 
+@pytest.mark.few(6)
 @BOUNDARIES
 @pytest.mark.parametrize("error", ERRORS)
 @pytest.mark.parametrize("apart", [0.0, 1e-6, 0.01, 0.5])

@@ -154,6 +154,7 @@ def test_the_same_bits_twice_and_a_path_has_no_memory(count: int) -> None:
     assert_close(law(made, down[-1:]), first.isel(step=[-1]), 1e-6)
 
 
+@pytest.mark.large
 @pytest.mark.parametrize("boundary", ["free", large("periodic")])
 def test_the_mesh_is_as_the_sum_over_pairs(boundary: str, monkeypatch: pytest.MonkeyPatch) -> None:
     made, down = random(600, placement="random"), [1.5e-6, 0.0, -1e-6]
@@ -202,6 +203,7 @@ def test_one_position_for_two_on_opposite_edges_is_refused() -> None:
         law(made, [0.0])
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("high", [5, 20])
 def test_low_summits_that_the_others_lift_are_found(high: int, monkeypatch: pytest.MonkeyPatch) -> None:
     """A few summits carry a load that lifts the surface between them to those far below the flat."""
@@ -332,6 +334,7 @@ SHAPES: dict[str, dict[str, Any]] = {
 }
 
 
+@pytest.mark.few(3)
 @pytest.mark.parametrize("order", [1, 2])
 @pytest.mark.parametrize("shape", SHAPES)
 def test_every_shape_without_adhesion(shape: str, order: int) -> None:

@@ -40,6 +40,7 @@ def onset(shape: rm.PowerLaw, control: str) -> float:
     return float(rm.pull_off(shape, effective_modulus=E, work=W, control=kind)[control])
 
 
+@pytest.mark.few(20)
 @every_shape
 @every_work
 @pytest.mark.parametrize(("control", "through"), [("indentation", "contact_radius"), ("force", "indentation")])
@@ -107,6 +108,7 @@ def test_no_contact_holds_a_stronger_pull(shape: rm.PowerLaw, work: float) -> No
         indent(shape, work, force=[0.0, pull])
 
 
+@pytest.mark.few(20)
 @every_shape
 @pytest.mark.parametrize("effective_modulus", [1e3, 3.3e4, 7.1e6, 1.9e9, 5.7e12])
 def test_the_pull_off_force_that_is_stated_is_the_least_that_holds(
@@ -120,6 +122,7 @@ def test_the_pull_off_force_that_is_stated_is_the_least_that_holds(
         rm.indent(shape, effective_modulus=effective_modulus, work=W, force=math.nextafter(float(off.force), -math.inf))
 
 
+@pytest.mark.few(20)
 @every_shape
 @every_work
 @pytest.mark.parametrize("control", ["indentation", "force"])

@@ -130,6 +130,7 @@ def test_where_the_contact_lifts_before_it_lets_go() -> None:
     assert (np.diff(radii) > 0.0).all()
 
 
+@pytest.mark.few(4)
 @pytest.mark.parametrize("length", [1e-6, 1e3])
 @pytest.mark.parametrize("pressure", [1e-5, 1.0])
 @pytest.mark.parametrize("tabor", [0.1, 2.0])

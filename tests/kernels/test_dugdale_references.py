@@ -129,6 +129,7 @@ def flat_of(shape: Shape) -> float:
     return float(getattr(shape, "flat_radius", 0.0))
 
 
+@pytest.mark.few(20)
 @pytest.mark.parametrize("case", CASES)
 def test_at_a_contact_radius(case: Case) -> None:
     if isinstance(case.shape, rm.FlatPunch):
@@ -142,6 +143,7 @@ def test_at_a_contact_radius(case: Case) -> None:
         compare(case, row, got.isel(contact_radius=i), bounds(case, row, X, sought=False))
 
 
+@pytest.mark.few(24)
 @pytest.mark.parametrize("case", CASES)
 @pytest.mark.parametrize("control", CONTROLS)
 def test_on_a_slow_retraction(case: Case, control: Control) -> None:
@@ -163,6 +165,7 @@ def test_on_a_slow_retraction(case: Case, control: Control) -> None:
         compare(case, row, got.isel({quantity: i}), allowed)
 
 
+@pytest.mark.few(24)
 @pytest.mark.parametrize("case", CASES)
 @pytest.mark.parametrize("control", CONTROLS)
 def test_pull_off(case: Case, control: Control) -> None:
@@ -176,6 +179,7 @@ def test_pull_off(case: Case, control: Control) -> None:
     assert abs(float(off[other]) - case.exact(row, other)) <= 1e-7 * case.scale(other)
 
 
+@pytest.mark.few(24)
 @pytest.mark.parametrize("case", CASES)
 @pytest.mark.parametrize("control", CONTROLS)
 def test_pull_off_is_where_the_contact_ends(case: Case, control: Control) -> None:

@@ -77,6 +77,7 @@ def above_its_rounding(case: dict[str, Any], row: dict[str, Any]) -> bool:
     return float(row["force"]) > 1e-6 * case["modulus"] * r * f
 
 
+@pytest.mark.few(40)
 @pytest.mark.parametrize(("name", "case"), tables())
 def test_every_answer_is_as_right_as_floats_allow(name: str, case: dict[str, Any]) -> None:
     shape = shape_of(name, case)
@@ -90,6 +91,7 @@ def test_every_answer_is_as_right_as_floats_allow(name: str, case: dict[str, Any
                 assert error <= bound, (control, row["value"], quantity, float(error) / bound, row)
 
 
+@pytest.mark.few(40)
 @pytest.mark.parametrize(("name", "case"), tables())
 def test_pull_off(name: str, case: dict[str, Any]) -> None:
     if case["work"] == 0.0:
@@ -102,6 +104,7 @@ def test_pull_off(name: str, case: dict[str, Any]) -> None:
         assert float(off.contact_radius) == pytest.approx(float(mp.mpf(exact["contact_radius"])), rel=1e-7)
 
 
+@pytest.mark.few(40)
 @pytest.mark.parametrize(("name", "case"), tables())
 def test_the_energy_of_the_springs(name: str, case: dict[str, Any]) -> None:
     """To 1e-10 of its parts, elastic and surface, of which each is about pi w a^2 or larger."""

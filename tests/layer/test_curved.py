@@ -92,7 +92,7 @@ def test_the_load_of_the_springs_is_that_of_the_pressure() -> None:
     assert along == pytest.approx(float((rings.area_weights * p).sum()), rel=1e-4)
 
 
-@pytest.mark.parametrize("sigmas", [2.0, 0.5])
+@pytest.mark.parametrize("sigmas", [2.0, large(0.5)])
 def test_it_is_the_twin_by_ring_kernels(sigmas: float) -> None:
     found = law(np.array([5.0, sigmas]) * STD, error=1e-6)
     force, radius = force_at(sigmas * STD, R, E, RADIUS, STD, DENSITY, points=24)
@@ -108,6 +108,7 @@ def test_the_stated_error_holds(error: float) -> None:
     assert off <= found.numerical_error <= 2.0 * error
 
 
+@pytest.mark.few(6)
 @pytest.mark.parametrize("slope", [0.1, 0.5])
 @pytest.mark.parametrize("error", [1e-2, 1e-3, 1e-4])
 @pytest.mark.parametrize("tip", [1e-9, 2e-9, 3e-9])
@@ -185,6 +186,7 @@ def test_the_stiffness_is_the_slope_of_the_force() -> None:
         assert stiffness[2] == pytest.approx((force[3] - force[1]) / (2.0 * step), rel=1e-5)
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize(("alpha", "low", "high"), [(0.04, 0.93, 1.0), (1.0, 0.4, 0.75)])
 @pytest.mark.parametrize("mu", [4.0, large(17.0)])
 def test_the_peak_pressure_after_greenwood_and_tripp(alpha: float, low: float, high: float, mu: float) -> None:
@@ -300,6 +302,7 @@ def test_far_away_there_is_no_force() -> None:
 FAMILIES = [{"distribution": "normal"}, {"distribution": "uniform"}, {"distribution": "expon"}]
 
 
+@pytest.mark.large
 @settings(deadline=None, max_examples=25)
 @given(
     st.sampled_from(FAMILIES),

@@ -39,6 +39,7 @@ def test_it_is_that_of_mpmath(relaxation: Relaxation, start: float, duration: fl
         assert relaxation.integral(at, over)[0] == pytest.approx(float(integral), rel=1e-13, abs=2e-16 * duration)
 
 
+@pytest.mark.large
 @settings(deadline=None)
 @given(series(), DECADES, DECADES)
 def test_the_duration_of_an_integral_is_found(relaxation: Relaxation, start: float, duration: float) -> None:

@@ -61,6 +61,7 @@ def test_a_cone_pressed_at_constant_speed() -> None:
     np.testing.assert_allclose(found, CONE * speed**2 * (0.2 * t**2 + memory), rtol=1e-12)
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize(
     ("shape", "parameters", "coefficient", "exponent"),
     [("paraboloid", {"radius": RADIUS}, SPHERE, 1.5), ("cone", {"slope": SLOPE}, CONE, 2.0)],

@@ -51,6 +51,7 @@ def replace(file: Path, old: str, new: str) -> None:
     file.write_text(text.replace(old, new, 1))
 
 
+@pytest.mark.large
 @pytest.mark.skipif(numba.config.DISABLE_JIT, reason="processes of its own compile")
 def test_only_what_decides_numbers_costs_what_was_compiled_and_computed(tmp_path: Path) -> None:
     package = tmp_path / "copy" / "roughmdr"

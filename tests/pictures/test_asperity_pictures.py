@@ -86,6 +86,7 @@ def test_the_edge_is_lifted_by_dl_under_jkr() -> None:
     assert float(contact.mdr_profile(np.array([contact.state.radius]))[0]) == pytest.approx(dl, rel=1e-9)
 
 
+@pytest.mark.few(3)
 @pytest.mark.parametrize("case", CASES)
 def test_infinite_pressures_are_marked(case: str) -> None:
     contact, force = contact_of(*CASES[case])
@@ -132,6 +133,7 @@ def test_one_of_a_pair_is_drawn_with_its_radius_among_others() -> None:
     assert "among its neighbours" in draw_asperity(Labelled.of(rm.run(coupled))).get_suptitle()
 
 
+@pytest.mark.large
 @pytest.mark.parametrize("kind", [large("png"), "svg", large("pdf")])
 def test_an_asperity_is_written_alike_each_time(tmp_path: Path, kind: str) -> None:
     contact, force = contact_of(*CASES["paraboloid, JKR"])

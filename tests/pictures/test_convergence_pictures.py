@@ -110,6 +110,7 @@ def test_results_without_realisations_are_refused(changes: dict[str, Any], messa
         draw_convergence(result(**changes))
 
 
+@pytest.mark.large
 @pytest.mark.parametrize("kind", [large("png"), "svg", large("pdf")])
 def test_convergence_is_written_alike_each_time(sixteen: Labelled, tmp_path: Path, kind: str) -> None:
     written = []

@@ -140,6 +140,7 @@ def test_many_cells_of_several_keys_are_drawn_along_one_and_select_chooses() -> 
         np.testing.assert_array_equal(one.get_xydata(), other.get_xydata())
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("suffix", ["png", "svg", "pdf"])
 def test_one_result_gives_the_same_file(result: xr.Dataset, tmp_path: Path, suffix: str) -> None:
     for name in ("a", "b"):
@@ -212,6 +213,7 @@ def test_a_picture_loads_no_more_numbers_than_it_draws_and_the_command_makes_it(
     assert (tmp_path / "a.svg").read_bytes() == (tmp_path / "b.svg").read_bytes()
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize(
     "path",
     [

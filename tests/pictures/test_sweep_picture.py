@@ -26,6 +26,7 @@ def two() -> xr.Dataset:
     return swept({"adhesion.work": WORK, "asperities.height.std": STD})
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("keep", ["curves", "statistics"])
 def test_the_pull_off_over_one_key_with_its_error(keep: str) -> None:
     made = swept({"asperities.height.std": STD}, output={"keep": keep, "variables": ["force"]})
@@ -46,6 +47,7 @@ def test_the_pull_off_over_one_key_with_its_error(keep: str) -> None:
     assert_legible(figure)
 
 
+@pytest.mark.large
 def test_two_keys_are_a_colour_map_of_each_cell(two: xr.Dataset) -> None:
     figure = rm.plot(two, kind="sweep", log=False)
     ax, bar = figure.axes
@@ -74,6 +76,7 @@ def test_three_keys_are_panels_with_one_colour_bar() -> None:
     assert_legible(figure)
 
 
+@pytest.mark.large
 def test_names_are_told_apart_without_a_scale() -> None:
     made = swept({"asperities.height.distribution": ["normal", "logistic", "gumbel_r"]})
     ax = rm.plot(made, kind="sweep").axes[0]
@@ -171,6 +174,7 @@ def test_at_a_force_another_variable_is_drawn(together: xr.Dataset) -> None:
         rm.plot(together, kind="sweep", variables="force", at={"force": "10 uN"})
 
 
+@pytest.mark.large
 def test_options_choose_the_kind_of_picture() -> None:
     few = swept({"adhesion.work": [0.01, 0.05]}, 2)
     for options in ({"variables": "pull_off_force"}, {"at": {"force": "1 uN"}}, {"x": "adhesion.work"}):

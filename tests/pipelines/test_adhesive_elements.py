@@ -37,6 +37,7 @@ def test_the_range_is_that_of_the_tabor_number_and_the_stretch_that_of_jkr() -> 
     assert float(folded["indentation"]) == pytest.approx(DETACHED, rel=1e-9)
 
 
+@pytest.mark.large
 def test_one_alone_is_nearly_jkr() -> None:
     """At Tabor number 3 its tension is 2.6 % larger, on a finer grid 2.8 %, its area 2 to 3 % smaller: by the range.
 
@@ -80,6 +81,7 @@ def test_no_rest_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
         lone_map(WORK, LONE.reach).move(-0.2)
 
 
+@pytest.mark.large
 def test_every_case_is_compared_drawn_and_reported(studied: CarriedOut) -> None:
     assert studied.result.sizes["case"] == len(QUICK)
     assert all(name in studied.text for name in ("independent", "pairs, order 1", "pairs, order 2", "images"))

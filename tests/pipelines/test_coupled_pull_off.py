@@ -83,6 +83,7 @@ def test_independent_asperities_know_nothing_of_their_distance(result: xr.Datase
         np.testing.assert_allclose(flat - flat.isel(each=0), 0.0, atol=1e-12 * float(abs(flat).max()))
 
 
+@pytest.mark.large
 def test_coupling_fades_with_the_distance() -> None:
     """Its first order falls as the load of a neighbour over the distance."""
     changes = []

@@ -25,6 +25,7 @@ def studied(tmp_path_factory: pytest.TempPathFactory) -> Iterator[CarriedOut]:
         yield made
 
 
+@pytest.mark.large
 def test_scenes_are_run_compared_drawn_and_reported(studied: CarriedOut) -> None:
     assert studied.result["name"].to_numpy().tolist() == list(QUICK)
     assert all(f"| {name}" in studied.text for name in QUICK)

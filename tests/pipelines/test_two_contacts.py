@@ -45,6 +45,7 @@ def test_a_pair_converges_exponentially(indenter: Indenter) -> None:
     assert errors[2] < 1e-11
 
 
+@pytest.mark.large
 def test_an_unequal_pair_has_the_equal_one_as_its_limit() -> None:
     one, two = pair(PARABOLOID, PARABOLOID._replace(slope=0.5 + 1e-12), 4.0, degree=6)
     alike = equal_pair(PARABOLOID, 4.0, degree=6)
@@ -121,6 +122,7 @@ def test_the_tilted_plane_by_boundary_integrals(indenter: Indenter, rtol: float)
     assert (tilted.force, tilted.moment) == pytest.approx((exact.force, exact.moment), rel=rtol)
 
 
+@pytest.mark.large
 @pytest.mark.parametrize("side", [large(12), 6])
 def test_a_paraboloid_in_a_periodic_patch(side: int) -> None:
     share, area = PERIODIC[side]
@@ -129,6 +131,7 @@ def test_a_paraboloid_in_a_periodic_patch(side: int) -> None:
     assert contact.area == pytest.approx(area, rel=1e-7)
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("side", PERIODIC)
 @pytest.mark.parametrize("shift", [0, 100])
 def test_areas_on_a_grid(side: int, shift: int) -> None:

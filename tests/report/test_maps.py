@@ -145,6 +145,7 @@ def test_a_map_with_gaps_has_moments_and_no_spectrum(folder: Path) -> None:
     assert "bush_gibson_thomas" in {line.label for line in found.lines}
 
 
+@pytest.mark.large
 @pytest.mark.parametrize("adhesion", [None, large({"model": "jkr", "work": 1e-3})])
 def test_the_table_of_cutoffs(folder: Path, adhesion: dict[str, object] | None) -> None:
     table = of_map(adhesion=adhesion)
@@ -192,6 +193,7 @@ def test_without_cutoffs_an_output_is_needed_and_with_them_it_may_be_given(folde
     assert Path("e.nc").exists()
 
 
+@pytest.mark.few(1)
 @pytest.mark.skipif(not SHARED.exists(), reason="the measured surfaces are not here")
 @pytest.mark.parametrize(("name", "cutoff"), [("optical.nc", "1.5 um"), ("afm_film.di", "2 nm")])
 def test_the_measured_surfaces(tmp_path: Path, name: str, cutoff: str, monkeypatch: pytest.MonkeyPatch) -> None:

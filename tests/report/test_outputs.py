@@ -173,6 +173,7 @@ def kinds(tmp_path: Path) -> Path:
     return tmp_path
 
 
+@pytest.mark.large
 def test_nothing_is_replaced_by_another_kind_of_file_unasked(kinds: Path) -> None:
     """Every command over every file, each with the ending that the command would give it."""
     rm.run(few(3), kinds / "input.nc")
@@ -253,6 +254,7 @@ def test_every_usual_name_of_a_netcdf_file_will_do(tmp_path: Path, name: str) ->
     assert names(tmp_path) == [name]
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("suffix", ["png", "pdf", "svg"])
 def test_a_picture_takes_the_place_of_one_of_its_own_format(kinds: Path, suffix: str) -> None:
     for there in ("png", "pdf", "svg"):
@@ -280,6 +282,7 @@ def test_an_input_is_never_replaced(kinds: Path) -> None:
 # Names
 
 
+@pytest.mark.large
 def test_a_name_that_cannot_be_read_again_is_refused_before(kinds: Path) -> None:
     odd = os.fsencode(kinds) + b"/a\xff"
     os.symlink(odd + b".nc", kinds / "link.nc")
@@ -298,6 +301,7 @@ def test_a_name_that_cannot_be_read_again_is_refused_before(kinds: Path) -> None
 # Checksums
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("keep", ["curves", "statistics"])
 def test_numbers_that_may_not_be_those_written_are_shown_with_a_warning(keep: str, tmp_path: Path) -> None:
     out, picture = tmp_path / "out.nc", tmp_path / "a.png"
@@ -350,6 +354,7 @@ except RoughmdrError as error:
 """
 
 
+@pytest.mark.large
 @pytest.mark.skipif(sys.platform != "linux", reason="no limit of the address space can be relied on here")
 @pytest.mark.parametrize("megabytes", [*map(large, [1, 8, 30, 75, 100]), 60])
 def test_too_little_memory_is_said_before_a_file_is_written(tmp_path: Path, megabytes: int) -> None:
@@ -380,6 +385,7 @@ def read_text(path: Path) -> tuple[int, int]:
     return int((branch == "loading").sum()), int((branch == "unloading").sum())
 
 
+@pytest.mark.large
 def test_a_run_that_memory_cannot_hold_is_refused_before_it_computes(tmp_path: Path) -> None:
     (tmp_path / "scene.toml").write_text(tomli_w.dumps(scene(batch={"realizations": 10_000_000})))
     limited = "import resource\nresource.setrlimit(resource.RLIMIT_AS, (8 * 10**9, 8 * 10**9))\n" + ROUGHMDR[2]
@@ -397,6 +403,7 @@ def test_a_run_that_memory_cannot_hold_is_refused_before_it_computes(tmp_path: P
     assert names(tmp_path) == ["scene.toml"]
 
 
+@pytest.mark.large
 @pytest.mark.parametrize("free", [*map(large, [0, 4_000, 90_000, 1_000_000, 5_000_000]), 20_000])
 def test_a_disk_that_is_full_when_the_result_is_written_says_so(tmp_path: Path, free: int) -> None:
     """All is one task, of which nothing is kept."""

@@ -51,6 +51,7 @@ def written(tmp_path: Path, **changes: Any) -> tuple[Page, str]:
     return Page(text), text
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize(
     "changes",
     [

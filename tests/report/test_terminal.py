@@ -41,6 +41,7 @@ def odd(content: Content) -> None:
     content.variables["odd\x9b\u202e"] = Variable((), np.array(1.0), {"units": TEXT})
 
 
+@pytest.mark.few(4)
 @pytest.mark.parametrize("name", [*RESULTS, "ensemble", "table", "map"])
 @pytest.mark.parametrize("failed", [False, True])
 def test_nothing_in_a_file_reaches_a_terminal(folder: Path, name: str, failed: bool) -> None:
@@ -62,6 +63,7 @@ def test_nothing_in_a_file_reaches_a_terminal(folder: Path, name: str, failed: b
         assert "\\x1b[31m" in "".join(done.output for done in said)
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize("every", [False, large(True)])
 @pytest.mark.parametrize(
     "name", ["curves", *(large(name) for name in RESULTS if name != "curves"), "ensemble", "table", "map"]
@@ -153,6 +155,7 @@ def command(*arguments: str, **how: Any) -> "subprocess.CompletedProcess[str]":
     return subprocess.run([*ROUGHMDR, *arguments], stderr=subprocess.PIPE, text=True, timeout=120, check=False, **how)
 
 
+@pytest.mark.large
 def test_a_scene_may_come_through_a_pipe(folder: Path) -> None:
     text = Path("curves.toml").read_text()
     done = command("plan", "/dev/stdin", cwd=folder, input=text, stdout=subprocess.PIPE)
@@ -164,6 +167,7 @@ def test_a_scene_may_come_through_a_pipe(folder: Path) -> None:
     assert (done.returncode, "longer than 16777216 bytes" in done.stderr) == (2, True), done.stderr
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize(
     "arguments",
     [["info", "curves.nc"], ["plan", "curves.toml"], ["info", "none.nc"], ["--help"], ["run", "--help"], ["--version"]],

@@ -69,6 +69,7 @@ def test_coupled_asperities_say_how_they_are_coupled() -> None:
     assert "leaves out" not in mean["trust"]
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("summits", [True, False])
 def test_flanks_are_those_of_summits_in_plan_and_result(tmp_path: Path, summits: bool) -> None:
     """Asperities at random overlap, some more on the way than at closest approach: that makes no summits of them."""

@@ -69,6 +69,7 @@ print(os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]))
 """
 
 
+@pytest.mark.large
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="there is no fork here")
 def test_a_forked_process_computes_too() -> None:
     code = _FORKED.format(tests=[str(folder) for folder in Path(__file__).parents[:2]])

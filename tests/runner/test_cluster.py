@@ -91,6 +91,7 @@ def two(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Dask]:
         yield cluster
 
 
+@pytest.mark.large
 @pytest.mark.parametrize("runs_per_task", [large(1), 7, large(64)])
 @pytest.mark.parametrize("keep", ["curves", "statistics"])
 def test_the_same_bits_from_a_cluster(two: Dask, keep: str, runs_per_task: int, request: pytest.FixtureRequest) -> None:
@@ -158,6 +159,7 @@ def test_an_interrupt_lets_the_tasks_in_flight_end(two: Dask, folder: Path, curv
     assert_clean(folder)
 
 
+@pytest.mark.large
 def test_workers_that_die_and_workers_that_come(tmp_path: Path, folder: Path, curves: xr.Dataset) -> None:
     """One of two dies: the other goes on. That one too: the batch waits. A new one comes: it goes on."""
     with dask(tmp_path, 2) as cluster, running(Batch(folder, "--scheduler", cluster.address)) as batch:

@@ -109,6 +109,7 @@ def test_killed_again_and_again_it_comes_to_the_same_bits(
     assert_clean(folder)
 
 
+@pytest.mark.large
 def test_killed_between_the_result_and_the_end_of_the_parts(
     left: Path, curves: xr.Dataset, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -232,6 +233,7 @@ def test_interrupted_it_ends_what_it_began_and_says_what_is_kept(
     assert resume(folder, capsys, curves) == RUNS - done
 
 
+@pytest.mark.large
 @pytest.mark.parametrize("scheduler", ["threads", large("processes")])
 def test_interrupted_twice_it_ends_at_once(folder: Path, capsys: pytest.CaptureFixture[str], scheduler: str) -> None:
     """Its runs would take minutes."""
@@ -255,6 +257,7 @@ def test_interrupted_twice_it_ends_at_once(folder: Path, capsys: pytest.CaptureF
     assert [path.name for path in folder.iterdir()] == ["scene.toml"]
 
 
+@pytest.mark.large
 @pytest.mark.parametrize("delay", [large(0.0), 0.3, large(0.8)])
 def test_an_interrupt_while_worker_processes_start(folder: Path, delay: float) -> None:
     with running(Batch(folder, "--scheduler", "processes")) as batch:

@@ -65,6 +65,7 @@ def told(mutation: Mutation) -> bool:
     return mutation.what not in (*_NOT_TOLD, "negative") and not anything and not left_out
 
 
+@pytest.mark.few(4)
 @pytest.mark.parametrize("base", FEW_AND_ALL)
 def test_one_thing_wrong_is_refused(base: str) -> None:
     for mutation in [each for each in ALL if each.base == base and told(each)]:
@@ -85,6 +86,7 @@ def inputs(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
+@pytest.mark.large
 @settings(deadline=None, max_examples=150, suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large])
 @given(data=st.data())
 def test_what_can_be_read_is_valid(inputs: Path, data: st.DataObject) -> None:

@@ -49,6 +49,7 @@ def slope(errors: list[float]) -> float:
     return -float(np.polyfit(np.log(COUNTS), np.log(errors), 1)[0])
 
 
+@pytest.mark.few(12)
 @pytest.mark.parametrize("control", ["indentation", "force"])
 @pytest.mark.parametrize("adhesive", [False, True], ids=["elastic", "jkr"])
 @pytest.mark.parametrize(("shape", "effective_modulus", "work", "order"), CASES, ids=NAMES)
@@ -158,6 +159,7 @@ FUNCTIONS: list[tuple[Callable[[np.ndarray], np.ndarray], rm.PowerSeries]] = [
 ]
 
 
+@pytest.mark.few(4)
 @pytest.mark.parametrize("work", [0.0, 0.05], ids=["elastic", "jkr"])
 @pytest.mark.parametrize(("f", "shape"), FUNCTIONS, ids=lambda value: getattr(value, "name", ""))
 def test_a_function_is_as_good_as_a_shape(
@@ -254,6 +256,7 @@ def test_a_profile_that_does_not_rise_is_refused(monkeypatch: pytest.MonkeyPatch
         rm.indent(lambda r: np.minimum(r, 1e-10), effective_modulus=1e9, indentation=1e-9, method=METHOD, springs=20)
 
 
+@pytest.mark.large
 def test_the_study_and_its_pictures(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(study, "SHAPES", {name: study.SHAPES[name] for name in ("flat punch", "paraboloid")})
     result = study.measure(quick=True)

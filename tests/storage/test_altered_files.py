@@ -135,6 +135,7 @@ def read(data: Labelled, of: Callable[[Labelled], Labelled], readers: dict[str, 
             assert not undefined(said), (change, name)
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("name", ["curves", *(large(name) for name in SCENES | LARGE if name != "curves")])
 def test_every_array_and_attribute_in_turn(name: str) -> None:
     data = made(name)

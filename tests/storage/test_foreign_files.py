@@ -104,6 +104,7 @@ KNOWN: list[tuple[str, list[Callable[[Content], None]], str, str]] = [
 ]
 
 
+@pytest.mark.few(12)
 @pytest.mark.parametrize(("name", "changed", "command", "says"), KNOWN)
 def test_what_is_wrong_is_said(
     folder: Path, name: str, changed: list[Callable[[Content], None]], command: str, says: str

@@ -88,6 +88,7 @@ def scaled(contacts: str, variable: str, h: float, alpha: float) -> float:
     return float(value) / (unit * alpha / (6.0 * math.pi * math.sqrt(3.0)))
 
 
+@pytest.mark.few(5)
 @pytest.mark.parametrize("variable", ["pressure", "contact_fraction", "contact_density"])
 @pytest.mark.parametrize(("h", "alpha"), [(-2.0, 1.8), (3.0, 2.5), (6.0, 1.8), (6.0, 40.0), (20.0, 2.5)])
 def test_the_laws_against_mpmath(variable: str, h: float, alpha: float) -> None:
@@ -112,6 +113,7 @@ def test_greenwood_by_the_closed_joint_law_of_height_and_curvature() -> None:
     assert scaled("circular", "pressure", h, ALPHA) == pytest.approx(float(exact), rel=1e-12)
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("alpha", [1.55, 4.0])
 def test_drawn_summits_carry_what_the_laws_say(alpha: float) -> None:
     """The height and second derivatives of a Gaussian surface where its slope is 0, weighted as their density is."""

@@ -342,6 +342,7 @@ def largest_on_a_grid(shape: Shape, nu: float, **given: Any) -> float:
     return float(rm.axis_stress(shape, z=z, effective_modulus=E, poisson=nu, **given).shear.max())
 
 
+@pytest.mark.few(3)
 @pytest.mark.parametrize("nu", [-0.9, 0.0, 0.5])
 @pytest.mark.parametrize("work", [0.0, WORK, 1.0])
 def test_the_largest_shear_is_the_largest_of_all_depths(nu: float, work: float) -> None:
@@ -430,6 +431,7 @@ def test_no_pressure_where_it_is_infinite(name: str, given: dict[str, Any], r: f
             rm.axis_stress(shape, z=[1e-7, 0.0], effective_modulus=E, poisson=NU, **given)
 
 
+@large_where_compiled
 def test_pressures_that_are_finite() -> None:
     edge = rm.pressure(rm.Paraboloid(radius=R), r=A, contact_radius=A, effective_modulus=E)
     assert float(edge) == 0.0
