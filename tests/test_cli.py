@@ -53,6 +53,7 @@ def test_quiet_says_nothing(small: Path) -> None:
 @pytest.mark.skipif(numba.config.DISABLE_JIT, reason="nothing is compiled")
 def test_a_run_says_that_it_compiles_and_only_then(small: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("XDG_CACHE_HOME", str(small / "cache"))
+    monkeypatch.delenv("ROUGHMDR_CACHE", raising=False)
     run = "run", "small.toml", "--set", "batch.realizations=1", "--set", "adhesion.work=0", "-o"
     says = [in_a_process(*run, name, cwd=small).stderr for name in ("first.nc", "second.nc")]
     assert says[0].splitlines()[0] == "A small scene: compiling the kernels (once) ..."
@@ -64,6 +65,7 @@ def test_a_run_says_that_it_compiles_and_only_then(small: Path, monkeypatch: pyt
 @pytest.mark.skipif(numba.config.DISABLE_JIT, reason="nothing is compiled")
 def test_a_quiet_run_compiles_in_silence(small: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("XDG_CACHE_HOME", str(small / "cache"))
+    monkeypatch.delenv("ROUGHMDR_CACHE", raising=False)
     done = in_a_process("run", "small.toml", "-o", "out.nc", "--quiet", "--set", "adhesion.work=0", cwd=small)
     assert (done.returncode, done.stdout, done.stderr) == (0, "", "")
     assert list((small / "cache").rglob("*.nbc"))

@@ -89,6 +89,7 @@ with open("/proc/self/status") as status:
 """
 
 
+@pytest.mark.large
 @pytest.mark.skipif(not Path("/proc/self/status").exists(), reason="the peak of a process is read from /proc")
 def test_the_plan_says_what_the_run_then_does(folder: Path) -> None:
     large = ["--set", "asperities.count=300000", "--set", "asperities.patch=0.02", "--set", "batch.realizations=6"]
@@ -189,6 +190,7 @@ def test_messages_are_in_colour_on_a_terminal_and_plain_elsewhere(folder: Path) 
     assert "\x1b" not in on_a_terminal(*command, cwd=folder, NO_COLOR="1")
 
 
+@pytest.mark.large
 @pytest.mark.parametrize("elsewhere", [True, large(False)])
 def test_it_works_where_the_home_folder_cannot_be_written(folder: Path, elsewhere: bool) -> None:
     """Compiled code goes where NUMBA_CACHE_DIR says, or nowhere. Root may write anywhere: a file stands in the way."""

@@ -259,6 +259,7 @@ def test_names_are_no_mathematics_in_a_picture(folder: Path) -> None:
     assert done.returncode == 0, done.stderr
 
 
+@pytest.mark.large
 def test_a_plan_is_not_disturbed_by_files_in_the_folder(folder: Path) -> None:
     (folder / "numpy.py").write_text("raise ImportError('mine')")
     (folder / "roughmdr").mkdir()
@@ -325,6 +326,7 @@ def test_a_title_is_one_line_that_can_be_printed(title: object) -> None:
         read(scene(title=title))
 
 
+@pytest.mark.large
 def test_a_scene_in_a_file_with_an_odd_name_or_a_byte_order_mark(folder: Path) -> None:
     text = tomli_w.dumps(scene(title=None, asperities=SMALL))
     raw = os.fsencode(folder) + b"/a\xff.toml"

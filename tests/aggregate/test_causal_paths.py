@@ -82,7 +82,7 @@ def test_without_adhesion(coupling: str, control: str) -> None:
     )
 
 
-@pytest.mark.few(3)
+@pytest.mark.few(2)
 @pytest.mark.filterwarnings("ignore::UserWarning")
 @pytest.mark.parametrize("control", CONTROLS)
 @pytest.mark.parametrize("adhesion", ["jkr", "dugdale"])

@@ -38,7 +38,7 @@ for variables in (["force"], ["force", "stiffness"], ["force", "energy", "dissip
 print(json.dumps(answers))
 """
 
-pytestmark = pytest.mark.skipif(numba.config.DISABLE_JIT, reason="nothing is compiled")
+pytestmark = [pytest.mark.skipif(numba.config.DISABLE_JIT, reason="nothing is compiled"), pytest.mark.large]
 
 
 def names(found: list[list[str]]) -> set[str]:
@@ -49,7 +49,7 @@ def names(found: list[list[str]]) -> set[str]:
 @pytest.fixture(scope="module")
 def cold(tmp_path_factory: pytest.TempPathFactory) -> list[tuple[list[list[str]], list[float]]]:
     """The functions that a paraboloid under JKR compiles for force, for stiffness after it, and for energies last."""
-    environment = os.environ | {"XDG_CACHE_HOME": str(tmp_path_factory.mktemp("cache"))}
+    environment = os.environ | {"XDG_CACHE_HOME": str(tmp_path_factory.mktemp("cache")), "ROUGHMDR_CACHE": ""}
     command = [sys.executable, "-c", COUNT]
     done = subprocess.run(command, env=environment, capture_output=True, text=True, check=True, timeout=600)
     return [(found, force) for found, force in json.loads(done.stdout)]

@@ -41,6 +41,7 @@ def base() -> xr.Dataset:
     return rm.run(coupled())
 
 
+@pytest.mark.large
 @pytest.mark.parametrize(("workers", "runs_per_task"), [large(1, 1), large(1, 4), (2, 2)])
 def test_the_same_bits_for_any_workers_and_tasks(
     base: xr.Dataset, tmp_path: Path, workers: int, runs_per_task: int

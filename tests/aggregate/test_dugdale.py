@@ -117,6 +117,7 @@ SHAPES = {
 KINDS = ["paraboloid", "flat_punch", "truncated_cone", pytest.param("rounded_punch", marks=pytest.mark.large)]
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("kind", KINDS)
 def test_the_work_of_a_closed_cycle_is_what_the_jumps_dissipate(kind: str) -> None:
     shape, numbers = SHAPES[kind]

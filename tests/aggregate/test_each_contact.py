@@ -42,6 +42,7 @@ def law_and_contacts(
     return law, contacts_at(ensemble, separation, step, **given)
 
 
+@pytest.mark.few(3)
 @pytest.mark.parametrize(
     ("adhesion", "interaction", "asperities"),
     [

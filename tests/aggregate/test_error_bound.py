@@ -145,6 +145,7 @@ def of_one(shape: Shape, effective_modulus: float, work: float, indentation: flo
     return float(error), float(law.numerical_error), float(abs(float(alone.force) - force) / abs(force))
 
 
+@pytest.mark.large
 @pytest.mark.parametrize(
     ("terms", "effective_modulus", "work", "distance"),
     [
@@ -166,6 +167,7 @@ def test_a_series_near_its_fold(
     assert alone <= 1e-12 + 3e-16 / math.sqrt(distance)
 
 
+@pytest.mark.large
 def test_a_steep_series_without_adhesion_is_found_to_the_last_digit_of_its_value() -> None:
     shape = rm.PowerSeries({100.0: 1.0, 150.0: 1.0})
     for indentation in np.geomspace(1e-3, 1e2, 40):

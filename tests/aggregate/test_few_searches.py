@@ -31,6 +31,7 @@ def test_without_adhesion_three_do_where_rows_differ_or_profiles_are_pieced(name
     assert 2.0 <= evaluations <= 3.45, "the contacts that steps do not find are evaluated once more"
 
 
+@pytest.mark.few(4)
 @pytest.mark.parametrize("name", BY_PROFILE)
 def test_three_find_a_contact_with_jkr(name: str) -> None:
     searches, evaluations, once = in_the_sum(name, WORK, math.inf)

@@ -271,6 +271,7 @@ def test_a_machine_that_is_not_one_is_refused(arguments, message) -> None:
 PRELOADS = {"preload": ("force", 2e-4), "preload_pressure": ("pressure", 3e3), "preload_contact_fraction": (None, 2e-3)}
 
 
+@pytest.mark.few(8)
 @pytest.mark.parametrize("name", PRELOADS)
 @pytest.mark.parametrize("stiffness", [None, 2e3, 20.0])
 @pytest.mark.parametrize("work", [0.0, 0.05])

@@ -69,6 +69,7 @@ BRANCHED = {
 }
 
 
+@pytest.mark.few(3)
 @pytest.mark.parametrize("case", BRANCHED)
 def test_contacts_with_several_branches_on_a_winding_path(case: str) -> None:
     shape, omegas = BRANCHED[case]
@@ -144,6 +145,7 @@ def any_shape(kind: str, rng: np.random.Generator) -> Any:
     }[kind]()
 
 
+@pytest.mark.few(4)
 @pytest.mark.filterwarnings("ignore::roughmdr.LimitWarning")
 @pytest.mark.parametrize("kind", ["power_law", *list(WIDER_SHAPES)[1:]])
 def test_a_block_finds_what_a_contact_alone_finds(kind: str) -> None:
@@ -179,6 +181,7 @@ PARAMETERS: dict[str, dict[str, Any]] = {
 }
 
 
+@pytest.mark.few(5)
 @pytest.mark.parametrize("shape", PARAMETERS)
 def test_a_scene_of_any_shape_is_its_ensemble_pressed(shape: str) -> None:
     kept = {name: value for name, value in SCENE["asperities"].items() if name != "radius"}

@@ -5,6 +5,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
+from forms import large_where_compiled
 from oracles.spring_in_series import DugdaleParaboloid
 
 import roughmdr as rm
@@ -141,6 +142,7 @@ def test_the_range_stands_for_the_strength_and_auto_says_what_it_took() -> None:
         rm.equilibria(tip, adhesion="dugdale", **given)
 
 
+@large_where_compiled
 def test_where_attraction_begins_without_a_jump_there_is_nothing_yet() -> None:
     tip, strength = rm.Cone(SLOPE), 1e5
     numbers = {"effective_modulus": E, "work": WORK, "adhesion": "dugdale", "strength": strength}

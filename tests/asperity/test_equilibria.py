@@ -17,9 +17,9 @@ b, S, R = 2e-6, 0.2, 1e-5
 BRANCHED = {
     "corner inside, deeper": (rm.TruncatedCone(S, b), 4.6),
     "corner inside, less deep": (rm.TruncatedCone(S, b), 6.0),
-    "flat on a paraboloid": (rm.TruncatedParaboloid(R, b), 6.6),
-    "blend": (rm.RoundedCone(S, b), 3.8),
-    "cap": (rm.CappedParaboloid(R, 40.0 * R, b), 7.0),
+    "truncated_paraboloid": (rm.TruncatedParaboloid(R, b), 6.6),
+    "rounded_cone": (rm.RoundedCone(S, b), 3.8),
+    "capped_paraboloid": (rm.CappedParaboloid(R, 40.0 * R, b), 7.0),
 }
 
 

@@ -111,14 +111,14 @@ def twins() -> dict[str, tuple[Shape, Jkr | DugdaleParaboloid]]:
         "corner": (rm.TruncatedCone(SLOPE, B), JkrTruncatedCone(E, _flat_work(1.5), B, slope=SLOPE)),
         "two branches": (rm.TruncatedCone(SLOPE, B), JkrTruncatedCone(E, _flat_work(4.6), B, slope=SLOPE)),
         "outer fold": (rm.TruncatedCone(SLOPE, B), JkrTruncatedCone(E, _flat_work(6.0), B, slope=SLOPE)),
-        "rounded": (rm.RoundedCone(SLOPE, B), JkrRoundedCone(E, _flat_work(3.8), B, slope=SLOPE)),
+        "rounded_cone": (rm.RoundedCone(SLOPE, B), JkrRoundedCone(E, _flat_work(3.8), B, slope=SLOPE)),
         "long range": (rm.Paraboloid(R), _dugdale(0.2)),
         "middle range": (rm.Paraboloid(R), _dugdale(1.1)),
         "short range": (rm.Paraboloid(R), _dugdale(4.0)),
     }
 
 
-TWINS = ("paraboloid", "cone", "steep", "two parts", "punch", "corner", "two branches", "outer fold", "rounded")
+TWINS = ("paraboloid", "cone", "steep", "two parts", "punch", "corner", "two branches", "outer fold", "rounded_cone")
 TWINS_DUGDALE = ("long range", "middle range", "short range")
 
 
@@ -216,7 +216,7 @@ def test_what_goes_out_comes_back(name: str) -> None:
         np.testing.assert_allclose(held.force, pulled, rtol=0, atol=1e-12 * force * max(ratio, 1.0))
         assert float(held.force[0]) == float(off.force)
         assert float(held.indentation[0]) == float(off.indentation)
-        if name not in ("two branches", "outer fold", "rounded"):  # there grips may be on another branch
+        if name not in ("two branches", "outer fold", "rounded_cone"):  # there grips may be on another branch
             grips = rm.indent(shape, indentation=held.indentation.to_numpy(), **numbers)
             np.testing.assert_allclose(grips.force.to_numpy()[1:], held.force.to_numpy()[1:], rtol=0, atol=1e-9 * force)
         for i, remote in enumerate(remotes):
@@ -225,6 +225,7 @@ def test_what_goes_out_comes_back(name: str) -> None:
             assert float(one.force) == pytest.approx(float(held.force[i]), abs=1e-14 * force)
 
 
+@pytest.mark.few(6)
 @pytest.mark.parametrize("name", TWINS + TWINS_DUGDALE)
 def test_a_soft_spring_is_a_dead_load_and_a_stiff_one_fixed_grips(name: str) -> None:
     shape, curve = twins()[name]
@@ -329,7 +330,7 @@ def test_jkr_has_no_contact_before_first_touch(name: str) -> None:
     assert (approach(shape, curve, remote=0.0, machine_stiffness=k).contact_radius > 0.0).all()
 
 
-@pytest.mark.parametrize("name", ["two branches", "outer fold", "rounded"])
+@pytest.mark.parametrize("name", ["two branches", "outer fold", "rounded_cone"])
 def test_an_approach_skips_an_inner_branch_that_ends_before_first_touch(name: str) -> None:
     """On the first stable root from a = 0 up, by a look at all radii."""
     shape, curve = twins()[name]
@@ -382,6 +383,7 @@ def test_a_tip_that_is_steep_is_attracted_without_a_jump_by_grips_but_not_by_a_s
     assert float(jumped.contact_radius) > 0.0
 
 
+@pytest.mark.few(5)
 @pytest.mark.parametrize("name", TWINS + TWINS_DUGDALE)
 def test_a_load_of_an_approach_is_reached_at_the_first_indentation(name: str) -> None:
     shape, curve = twins()[name]
@@ -401,7 +403,7 @@ def test_a_load_of_an_approach_is_reached_at_the_first_indentation(name: str) ->
         assert path[reached] - 1.001 * step <= float(found.indentation[i]) <= path[reached] + 1e-9 * step
         grips = approach(shape, curve, indentation=float(found.indentation[i]))
         assert float(grips.force) == pytest.approx(force, abs=1e-9 * scale)
-    if name not in ("two branches", "outer fold", "rounded", "two parts"):
+    if name not in ("two branches", "outer fold", "rounded_cone", "two parts"):
         back = rm.indent(shape, force=forces, **numbers)
         for quantity in ("indentation", "contact_radius", "stiffness"):
             np.testing.assert_allclose(found[quantity], back[quantity], rtol=1e-9)

@@ -94,6 +94,7 @@ def test_contacts_that_overlap_as_soon_as_they_are_made_are_told() -> None:
     assert any("(1 pairs): jump-on radius 5.84 um, distance 11 um" in line for line in told), told
 
 
+@pytest.mark.large
 @pytest.mark.parametrize(
     "interaction", [large({"model": "pairwise", "order": 1}), {"model": "pairwise", "boundary": "free"}]
 )

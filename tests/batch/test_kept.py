@@ -107,6 +107,7 @@ def test_while_it_runs_the_run_is_not_disturbed(tmp_path: Path) -> None:
     assert counts == sorted(counts)
 
 
+@pytest.mark.large
 def test_fresh_would_throw_away_what_is_kept(tmp_path: Path) -> None:
     folder = tmp_path / "batch"
     write_scene(folder, SWEPT)

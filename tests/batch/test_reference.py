@@ -54,6 +54,7 @@ def result() -> xr.Dataset:
     return rm.run(of_spectrum())
 
 
+@pytest.mark.large
 def test_it_is_the_force_of_another_program_on_the_same_map(result: xr.Dataset) -> None:
     section = SpectrumAsperities.model_validate({**SURFACE, "points": 16.0})
     modulus = rm.effective_modulus("3 MPa", 0.49)
@@ -84,6 +85,7 @@ def test_variables_beside_those_that_are_asked_for() -> None:
     np.testing.assert_allclose(curves["reference_pressure"], curves["reference_force"] / 1e-8, rtol=1e-12)
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("boundary", ["periodic", "free"])
 def test_asperities_on_a_plane_are_pressed_as_the_surface_that_they_make(boundary: str) -> None:
     interaction = {"model": "pairwise", "boundary": boundary}
@@ -111,6 +113,7 @@ def test_where_the_reference_reaches_a_pressure(result: xr.Dataset) -> None:
         result.drop_vars("reference_force").roughmdr.at_force(1e-6, reference=True)
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize(
     ("periodic", "interaction", "line"),
     [

@@ -112,6 +112,7 @@ SCENES: dict[str, dict[str, Any]] = {
 }
 
 
+@pytest.mark.few(3)
 @pytest.mark.parametrize("name", SCENES)
 def test_the_same_again_computes_nothing(name: str, calls: Calls, out: Path) -> None:
     first = go(SCENES[name], out)

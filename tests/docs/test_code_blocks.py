@@ -31,6 +31,7 @@ LONG = [
     "greenwood_williamson",
     "layers",
     "paths",
+    "start",
 ]
 """Pages whose blocks take longest: long forms."""
 LANGUAGES = {"python", "toml", "sh", "text", "bibtex"}

@@ -49,6 +49,7 @@ def generate(path: Path, **keys: object) -> xr.Dataset:
     return rm.generate({"source": "surface", "file": str(path), **keys}, seed=0)
 
 
+@pytest.mark.few(4)
 @pytest.mark.parametrize(
     ("name", "write"),
     [

@@ -38,7 +38,7 @@ def maps(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
-@pytest.mark.few(1)
+@pytest.mark.large
 @pytest.mark.parametrize(
     ("name", "keys", "most"),
     [

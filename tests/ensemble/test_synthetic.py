@@ -51,6 +51,7 @@ def made(folder: Path, *options: str) -> xr.Dataset:
         return data.load()
 
 
+@pytest.mark.large
 def test_a_map_is_scaled_to_its_height_or_its_slope(tmp_path: Path) -> None:
     usual = made(tmp_path)
     assert float(usual.height.std()) == pytest.approx(0.5e-6, rel=1e-13)

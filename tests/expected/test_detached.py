@@ -309,6 +309,7 @@ def mean_force_of_summits(h: float, bottom: float, order: int) -> float:
     return total
 
 
+@pytest.mark.large
 def test_summits_of_gaussian_surfaces_against_nested_quadrature() -> None:
     """Their radius has a pole, and goes with the height."""
     path = [4.0 * UM, 0.5 * UM, 0.8 * UM, 4.0 * UM]

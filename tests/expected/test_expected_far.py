@@ -157,7 +157,7 @@ BOUNDED = [
 ]
 
 
-@pytest.mark.few(1)
+@pytest.mark.large
 @pytest.mark.parametrize(("family", "own", "spearman"), [*BOUNDED[:2], *(large(*case) for case in BOUNDED[2:])])
 def test_heights_correlated_with_an_extreme_radius_may_all_be_equal(
     family: str, own: dict[str, float], spearman: float

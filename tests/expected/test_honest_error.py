@@ -33,6 +33,7 @@ def test_the_stated_error_of_many_scenes_is_honest() -> None:
     judge_random_scenes(study.SCENES)
 
 
+@pytest.mark.large
 def test_the_study_is_carried_out(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """By two processes, into files."""
     monkeypatch.setattr(study, "QUICK", 12)
@@ -56,6 +57,7 @@ def test_orders_that_agree_by_chance_are_not_accepted() -> None:
     assert study.judge(scene(44)).honest
 
 
+@pytest.mark.large
 def test_a_force_that_almost_jumps_has_a_reference() -> None:
     """For some radii two folds nearly divide the branch."""
     assert study.judge(scene(188)).honest

@@ -24,7 +24,7 @@ def number(fit: Any, key: str, end: str = "") -> float:
     return float(fit[key.replace(".", "_") + end])
 
 
-@pytest.mark.few(2)
+@pytest.mark.few(1)
 @pytest.mark.parametrize(("kind", "free"), [*CASES[:-3], *(large(*case) for case in CASES[-3:])])
 def test_scipy_finds_the_same(kind: str, free: list[str]) -> None:
     """With noise so small that no jump comes near a step, beside which least squares have no minimum."""

@@ -77,7 +77,7 @@ def above_its_rounding(case: dict[str, Any], row: dict[str, Any]) -> bool:
     return float(row["force"]) > 1e-6 * case["modulus"] * r * f
 
 
-@pytest.mark.few(40)
+@pytest.mark.few(30)
 @pytest.mark.parametrize(("name", "case"), tables())
 def test_every_answer_is_as_right_as_floats_allow(name: str, case: dict[str, Any]) -> None:
     shape = shape_of(name, case)
@@ -91,7 +91,7 @@ def test_every_answer_is_as_right_as_floats_allow(name: str, case: dict[str, Any
                 assert error <= bound, (control, row["value"], quantity, float(error) / bound, row)
 
 
-@pytest.mark.few(40)
+@pytest.mark.few(30)
 @pytest.mark.parametrize(("name", "case"), tables())
 def test_pull_off(name: str, case: dict[str, Any]) -> None:
     if case["work"] == 0.0:

@@ -91,6 +91,7 @@ def test_keys_swept_together_are_drawn_over_one_of_them() -> None:
         assert figure.axes[0].get_xlabel() == (label or "asperities.radius.mean [µm]")
 
 
+@pytest.mark.large
 def test_a_law_at_a_force_and_at_its_largest(two: xr.Dataset) -> None:
     figure = rm.plot(two, kind="sweep", variables="contact_area", at={"force": "1 uN"})
     assert "where loading reaches force 1 uN" in figure.get_suptitle()

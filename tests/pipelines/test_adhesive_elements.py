@@ -88,6 +88,7 @@ def test_every_case_is_compared_drawn_and_reported(studied: CarriedOut) -> None:
     assert (studied.folder / "versus_adhesive_bem.png").stat().st_size > 5000
 
 
+@pytest.mark.large
 def test_pairs_are_nearer_than_independent_asperities_and_the_grid_nearer_still(studied: CarriedOut) -> None:
     several = studied.result.isel(case=1)
     independent, pairs, grid = (judge(several, name) for name in ("independent", "second", "coarse"))

@@ -19,6 +19,7 @@ def studied(tmp_path_factory: pytest.TempPathFactory) -> Iterator[CarriedOut]:
         yield made
 
 
+@pytest.mark.large
 def test_hills_of_one_map_pull_off_nearer_to_elements_than_summits() -> None:
     case = QUICK[1]
     adhesive = Adhesive(case)

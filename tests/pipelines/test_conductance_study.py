@@ -15,6 +15,7 @@ def studied(tmp_path_factory: pytest.TempPathFactory) -> Iterator[CarriedOut]:
         yield made
 
 
+@pytest.mark.large
 def test_pairs_are_better_than_independent_asperities(studied: CarriedOut) -> None:
     """Where the grid of the quick form resolves the contacts."""
     for group in ("random", "separated"):

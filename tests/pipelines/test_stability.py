@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import xarray as xr
+from forms import large
 from stability import STUDY
 from studies.stability.cases import AXES, Case, design
 from studies.stability.judge import (
@@ -99,7 +100,7 @@ def test_the_ends_of_every_axis_are_among_the_cases() -> None:
         np.testing.assert_allclose([axis.at(part) for part in axis.fraction(values)], values, rtol=1e-9)
 
 
-@pytest.mark.parametrize("law", ["elastic", "jkr", "dugdale"])
+@pytest.mark.parametrize("law", ["elastic", "jkr", large("dugdale")])
 def test_an_everyday_case_is_right(law: str) -> None:
     assert {each.outcome for each in verdicts(MILD, law)} == {RIGHT}
 
@@ -120,7 +121,7 @@ def contact(law: str, control: str) -> tuple[Reference, dict[str, float]]:
 
 
 @pytest.mark.parametrize("control", CONTROLS)
-@pytest.mark.parametrize("law", ["elastic", "jkr", "dugdale"])
+@pytest.mark.parametrize("law", ["elastic", "jkr", large("dugdale")])
 def test_an_answer_that_is_a_little_off_is_wrong(law: str, control: str) -> None:
     reference, got = contact(law, control)
     right = reference.judge(control, got)

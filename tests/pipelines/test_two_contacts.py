@@ -36,6 +36,7 @@ def test_two_level_punches(distance: float) -> None:
     assert punch_force(distance) == pytest.approx(2.0 * PUNCHES[distance], rel=1e-9)
 
 
+@pytest.mark.large
 @pytest.mark.parametrize("indenter", [PARABOLOID, large(QUARTIC)])
 def test_a_pair_converges_exponentially(indenter: Indenter) -> None:
     forces = [equal_pair(indenter, 4.0, degree).force for degree in (4, 6, 8, 10)]

@@ -20,6 +20,7 @@ def studied(tmp_path_factory: pytest.TempPathFactory) -> Iterator[CarriedOut]:
         yield made
 
 
+@pytest.mark.large
 def test_every_case_is_compared_drawn_and_reported(studied: CarriedOut) -> None:
     assert studied.result.sizes["case"] == len(QUICK)
     assert all(f"| {name} |" in studied.text for name in ("random", "square", "map"))

@@ -34,6 +34,7 @@ def slope(error: np.ndarray, evaluations: np.ndarray) -> float:
 TIP, HERTZ, JKR = "paraboloid, JKR", "Hertz, lognormal radii", "JKR, equal radii"
 
 
+@pytest.mark.large
 def test_closed_forms_are_exact_with_an_evaluation_for_each_state(result: xr.Dataset) -> None:
     error, evaluations = points(result, TIP, "closed forms")
     assert (error < 1e-12).all()

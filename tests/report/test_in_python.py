@@ -76,6 +76,7 @@ def test_a_plot_is_a_figure_and_a_file_if_asked_for(tmp_path: Path) -> None:
         rm.plot(result, variables=["energy"])
 
 
+@pytest.mark.large
 def test_a_plot_of_a_dataset_has_the_curves_over_it_that_its_file_has(tmp_path: Path) -> None:
     result = rm.run(SMALL, tmp_path / "out.nc")
     counts = []

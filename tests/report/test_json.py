@@ -206,6 +206,7 @@ def test_an_interrupted_run() -> None:
     assert document["faults"][0]["message"] == "interrupted; nothing was written"
 
 
+@pytest.mark.large
 def test_what_cannot_be_printed_is_told_in_one_line() -> None:
     for arguments in (["plan", "few.toml"], ["info", "none.nc"]):
         with open("/dev/full", "w") as full:

@@ -167,7 +167,7 @@ def test_a_scene_may_come_through_a_pipe(folder: Path) -> None:
     assert (done.returncode, "longer than 16777216 bytes" in done.stderr) == (2, True), done.stderr
 
 
-@pytest.mark.few(2)
+@pytest.mark.few(1)
 @pytest.mark.parametrize(
     "arguments",
     [["info", "curves.nc"], ["plan", "curves.toml"], ["info", "none.nc"], ["--help"], ["run", "--help"], ["--version"]],

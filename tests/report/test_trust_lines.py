@@ -69,7 +69,7 @@ def test_coupled_asperities_say_how_they_are_coupled() -> None:
     assert "leaves out" not in mean["trust"]
 
 
-@pytest.mark.few(1)
+@pytest.mark.large
 @pytest.mark.parametrize("summits", [True, False])
 def test_flanks_are_those_of_summits_in_plan_and_result(tmp_path: Path, summits: bool) -> None:
     """Asperities at random overlap, some more on the way than at closest approach: that makes no summits of them."""
@@ -132,6 +132,7 @@ CASES: list[tuple[dict[str, Any], str]] = [
 ]
 
 
+@pytest.mark.few(3)
 @pytest.mark.parametrize(("changes", "says"), CASES)
 def test_plan_run_and_info_tell_how_far_the_force_can_be_trusted(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, changes: dict[str, Any], says: str

@@ -102,6 +102,7 @@ def test_the_same_bits_from_a_cluster(two: Dask, keep: str, runs_per_task: int, 
     )
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize(
     ("scheduler", "workers"), [("threads", 1), ("threads", 2), ("threads", 3), ("processes", 2), ("processes", 3)]
 )
@@ -115,6 +116,7 @@ def test_the_same_bits_from_threads_and_processes(
     )
 
 
+@pytest.mark.large
 def test_few_tasks_are_in_flight(two: Dask) -> None:
     """Two for each thread, so that no heap of results waits for the writer."""
     from distributed import Client

@@ -125,6 +125,7 @@ def test_killed_between_the_result_and_the_end_of_the_parts(
     assert (left / "out.nc").stat().st_mtime_ns == written.st_mtime_ns
 
 
+@pytest.mark.large
 def test_parts_of_another_scene_outlive_a_result_that_is_there(
     left: Path, curves: xr.Dataset, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -140,6 +141,7 @@ def test_parts_of_another_scene_outlive_a_result_that_is_there(
     assert 0 < resume(left, capsys, curves) < RUNS
 
 
+@pytest.mark.large
 @pytest.mark.parametrize("runs_per_task", [8, large(RUNS)])
 def test_killed_while_the_result_is_half_written(
     folder: Path, curves: xr.Dataset, capsys: pytest.CaptureFixture[str], runs_per_task: int
@@ -397,6 +399,7 @@ tasks.simulate_realization = simulate_realization
     assert_clean(folder)
 
 
+@pytest.mark.large
 def test_where_no_run_can_be_computed_the_first_says_why(folder: Path) -> None:
     with running(
         Batch(folder, code="import roughmdr.batch.tasks as tasks\ntasks.simulate_realization = lambda *_: [][0]")
@@ -475,6 +478,7 @@ def remove(folder: Path) -> None:
     until(is_removed)
 
 
+@pytest.mark.large
 @pytest.mark.parametrize("what", ["", large("out.nc.parts")])
 def test_a_folder_that_vanishes_is_told_of(folder: Path, curves: xr.Dataset, what: str) -> None:
     with running(Batch(folder)) as batch:

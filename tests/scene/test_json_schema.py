@@ -65,7 +65,7 @@ def told(mutation: Mutation) -> bool:
     return mutation.what not in (*_NOT_TOLD, "negative") and not anything and not left_out
 
 
-@pytest.mark.few(4)
+@pytest.mark.few(2)
 @pytest.mark.parametrize("base", FEW_AND_ALL)
 def test_one_thing_wrong_is_refused(base: str) -> None:
     for mutation in [each for each in ALL if each.base == base and told(each)]:

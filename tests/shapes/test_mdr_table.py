@@ -81,6 +81,7 @@ def test_the_profile_rises_through_its_points(seed: int, points: int, unit: floa
         assert (np.diff(values) >= -1e-15 * values[-1]).all()
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize("seed", range(4))
 def test_f_g_and_G_are_integrals_of_each_other(seed: int) -> None:
     shape = table(seed)
@@ -196,6 +197,7 @@ def test_each_asperity_of_an_ensemble_has_its_own_table(work: float, tmp_path: A
     xr.testing.assert_identical(again.force, law.force)
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("work", [0.0, 0.02])
 def test_coupled_tables_of_paraboloids_are_coupled_paraboloids(work: float) -> None:
     rng = np.random.default_rng(3)

@@ -13,6 +13,7 @@ from roughmdr.shapes import SHAPES, ProfileShape
 CURVED = [kind for kind, shape in SHAPES.items() if issubclass(shape, ProfileShape)]
 
 
+@pytest.mark.few(5)
 @pytest.mark.parametrize("kind", CURVED)
 def test_a_profile_is_right_to_its_roundings(kind: str) -> None:
     rng = np.random.default_rng(CURVED.index(kind))

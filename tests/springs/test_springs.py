@@ -100,6 +100,7 @@ def test_a_given_radius_is_the_length_of_the_row(
     np.testing.assert_allclose(coarse.stiffness, exact.stiffness, rtol=1e-2)
 
 
+@pytest.mark.few(10)
 @pytest.mark.parametrize("adhesive", [False, True], ids=["elastic", "jkr"])
 @pytest.mark.parametrize(("shape", "effective_modulus", "work", "order"), CASES, ids=NAMES)
 def test_loading_and_unloading(

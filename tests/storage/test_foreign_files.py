@@ -23,6 +23,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
         yield made
 
 
+@pytest.mark.large
 @settings(deadline=None, max_examples=EXAMPLES)
 @given(
     name=st.sampled_from(sorted(RESULTS)),

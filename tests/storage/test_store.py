@@ -143,6 +143,7 @@ def test_only_an_ordinary_file_that_is_no_input_is_replaced(tmp_path: Path) -> N
     assert sorted(path.name for path in tmp_path.iterdir()) == ["pipe", "scene.toml"]
 
 
+@pytest.mark.large
 def test_a_full_disk_is_a_store_error(tmp_path: Path) -> None:
     code = (
         "import resource, signal, sys; signal.signal(signal.SIGXFSZ, signal.SIG_IGN)\n"

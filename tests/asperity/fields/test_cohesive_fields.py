@@ -58,6 +58,7 @@ def graded(ends: list[float], count: int = 36) -> tuple[Floats, Floats]:
 every_shape = pytest.mark.parametrize("name", SHAPES)
 
 
+@pytest.mark.few(14)
 @every_shape
 @pytest.mark.parametrize("which", range(len(PARTS) + 1))
 def test_the_half_space_answers_the_pressure(name: str, which: int) -> None:

@@ -94,6 +94,7 @@ def sampled(name: str, work: float) -> Sampled:
     return Sampled(shape, depth, state, inside, s, ds, p)
 
 
+@pytest.mark.few(12)
 @every_shape
 @every_work
 def test_the_pressure_integrates_to_the_force(name: str, work: float) -> None:
@@ -263,6 +264,7 @@ UNIT: dict[str, Shape] = {
 }
 
 
+@pytest.mark.few(4)
 @pytest.mark.parametrize("name", UNIT)
 @pytest.mark.parametrize("a", [1.0 + 1e-10, 1.5, 3e4])
 def test_a_twin_with_many_digits(name: str, a: float) -> None:
@@ -280,6 +282,7 @@ def test_a_twin_with_many_digits(name: str, a: float) -> None:
     np.testing.assert_allclose(0.5 * math.pi * u, sunk, rtol=2e-12)
 
 
+@pytest.mark.few(12)
 @every_shape
 @every_work
 def test_far_away_the_contact_is_a_force(name: str, work: float) -> None:
