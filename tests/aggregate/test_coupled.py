@@ -69,6 +69,7 @@ def test_coupled_asperities_carry_more_on_a_periodic_patch_and_less_on_a_free_on
     assert force["free"] < force["none"]
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("keep", ["curves", "statistics"])
 def test_a_step_without_equilibrium_is_marked(keep: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Here for want of iterations: the first contacts, which are few, are found; the last ones are not."""

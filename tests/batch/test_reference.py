@@ -226,7 +226,7 @@ def test_commands_tell_and_draw_it(tmp_path: Path) -> None:
     assert "reference    not drawn" in command("plot", str(plain), "-o", str(picture), "--with-reference")
 
 
-@pytest.mark.few(2)
+@pytest.mark.few(1)
 @pytest.mark.parametrize(
     ("changes", "advised"),
     [

@@ -104,6 +104,7 @@ def test_a_law_at_a_force_and_at_its_largest(two: xr.Dataset) -> None:
     np.testing.assert_allclose(drawn / drawn.max(), mean.T / mean.max(), rtol=1e-9)
 
 
+@pytest.mark.large
 def test_diagnostics_are_numbers_too(two: xr.Dataset) -> None:
     for name in ("model_error", "tabor_number", "run_time"):
         if name in two:

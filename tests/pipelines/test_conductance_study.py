@@ -26,6 +26,7 @@ def test_pairs_are_better_than_independent_asperities(studied: CarriedOut) -> No
         assert float(pairs) < 0.1 * float(independent)
 
 
+@pytest.mark.large
 def test_the_stated_error_holds(studied: CarriedOut) -> None:
     for under_load in (False, True):
         assert float(bounded(studied.result, under_load).mean()) >= 0.85

@@ -32,6 +32,7 @@ def test_scenes_are_run_compared_drawn_and_reported(studied: CarriedOut) -> None
     assert (studied.folder / "trust.png").stat().st_size > 5000
 
 
+@pytest.mark.large
 def test_a_trap_is_refused_and_the_force_of_the_others_is_bounded(studied: CarriedOut) -> None:
     refused = studied.result["oracle"].to_numpy() == "none"
     assert refused.any()

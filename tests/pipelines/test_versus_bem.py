@@ -27,6 +27,7 @@ def test_every_case_is_compared_drawn_and_reported(studied: CarriedOut) -> None:
     assert (studied.folder / "versus_bem.png").stat().st_size > 5000
 
 
+@pytest.mark.large
 def test_independent_forces_are_too_low_by_more_than_the_grid_is_off(studied: CarriedOut) -> None:
     error, grid = errors(studied.result), grid_errors(studied.result)
     known = np.isfinite(error)

@@ -41,6 +41,7 @@ def test_closed_forms_are_exact_with_an_evaluation_for_each_state(result: xr.Dat
     assert evaluations == [DEPTHS.size + 1]
 
 
+@pytest.mark.large
 def test_springs_come_nearer_in_proportion_to_their_number(result: xr.Dataset) -> None:
     error, evaluations = points(result, TIP, "springs")
     for quantity in range(len(QUANTITIES)):

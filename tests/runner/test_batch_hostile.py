@@ -42,6 +42,7 @@ def forces(table: dict[str, Any], runs_per_task: int = 1) -> np.ndarray:
     return found
 
 
+@pytest.mark.large
 def test_batches_in_threads_of_one_process_do_not_mix() -> None:
     tables = [few(seed=seed, output={"keep": "statistics"}) for seed in range(6)]
     alone = [forces(table) for table in tables]

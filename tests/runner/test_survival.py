@@ -164,6 +164,7 @@ netCDF4.Dataset.__exit__ = sync
 # Damaged
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize(
     "damage",
     [
@@ -495,6 +496,7 @@ def test_a_folder_that_vanishes_is_told_of(folder: Path, curves: xr.Dataset, wha
 # Side by side
 
 
+@pytest.mark.large
 def test_two_batches_do_not_write_one_result(folder: Path, curves: xr.Dataset) -> None:
     with running(Batch(folder)) as first:
         first.wait_for_lines(1)

@@ -88,7 +88,7 @@ def scaled(contacts: str, variable: str, h: float, alpha: float) -> float:
     return float(value) / (unit * alpha / (6.0 * math.pi * math.sqrt(3.0)))
 
 
-@pytest.mark.few(5)
+@pytest.mark.few(3)
 @pytest.mark.parametrize("variable", ["pressure", "contact_fraction", "contact_density"])
 @pytest.mark.parametrize(("h", "alpha"), [(-2.0, 1.8), (3.0, 2.5), (6.0, 1.8), (6.0, 40.0), (20.0, 2.5)])
 def test_the_laws_against_mpmath(variable: str, h: float, alpha: float) -> None:
