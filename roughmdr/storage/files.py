@@ -76,11 +76,9 @@ def check_writable(path: Path, inputs: Iterable[Path] = ()) -> None:
             raise StoreError(f"{label}: the folder {target.parent} does not exist")
         if not _is_utf8(path.absolute()) or not _is_utf8(target.absolute()):
             raise StoreError(f"{str(path)!r}: the name is not UTF-8, and netCDF could not read it again; give another")
-        descriptor, name = tempfile.mkstemp(prefix=_TEMPORARY_PREFIX, dir=target.parent)
+        tempfile.TemporaryFile(dir=target.parent).close()  # without a name where it can, so that a kill leaves none
     except OSError as error:
         raise StoreError(f"{label}: cannot be written: {error.strerror}") from None
-    os.close(descriptor)
-    Path(name).unlink()
 
 
 def check_ending(path: Path, kind: str, endings: Sequence[str]) -> str:
