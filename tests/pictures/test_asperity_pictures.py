@@ -35,6 +35,7 @@ CASES: dict[str, tuple[Shape, Adhesion, float]] = {
     "truncated cone": (rm.TruncatedCone(slope=0.17, flat_radius=6e-6), Adhesion(0.01), 1e-6),
     "table": (rm.Tabulated(TABLE, 0.07 * TABLE + TABLE**2 / 90e-6), JKR, 2e-6),
 }
+NAMES = [large(case) if case == "cone, range" else case for case in CASES]
 
 
 def contact_of(shape: Shape, adhesion: Adhesion, indentation: float) -> tuple[OneContact, float]:
@@ -47,7 +48,7 @@ def contact_of(shape: Shape, adhesion: Adhesion, indentation: float) -> tuple[On
 
 
 @pytest.mark.few(3)
-@pytest.mark.parametrize("case", [large(case) if case == "cone, range" else case for case in CASES])
+@pytest.mark.parametrize("case", NAMES)
 def test_the_drawn_contact_has_the_indentation_and_the_force(case: str) -> None:
     contact, force = contact_of(*CASES[case])
     indentation = CASES[case][2]
@@ -63,14 +64,14 @@ def test_the_drawn_contact_has_the_indentation_and_the_force(case: str) -> None:
     assert total == pytest.approx(force, rel=2e-3)
 
 
-@pytest.mark.parametrize("case", [large(case) if case == "cone, range" else case for case in CASES])
+@pytest.mark.parametrize("case", NAMES)
 def test_the_springs_bear_the_force(case: str) -> None:
     contact, force = contact_of(*CASES[case])
     x, end = contact.springs()
     assert -MODULUS * (x[1] - x[0]) * end.sum() == pytest.approx(force, rel=0.12, abs=2e-6)  # of 26 springs
 
 
-@pytest.mark.parametrize("case", [large(case) if case == "cone, range" else case for case in CASES])
+@pytest.mark.parametrize("case", NAMES)
 def test_surface_and_body_touch_within_the_contact_alone(case: str) -> None:
     contact, _ = contact_of(*CASES[case])
     r, surface = contact.surface()
@@ -88,7 +89,7 @@ def test_the_edge_is_lifted_by_dl_under_jkr() -> None:
 
 
 @pytest.mark.few(3)
-@pytest.mark.parametrize("case", [large(case) if case == "cone, range" else case for case in CASES])
+@pytest.mark.parametrize("case", NAMES)
 def test_infinite_pressures_are_marked(case: str) -> None:
     contact, force = contact_of(*CASES[case])
     figure = draw_contact(contact, force, "A contact", [])
