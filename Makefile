@@ -28,7 +28,7 @@ test: setup
 
 # The tests, and those of kernels, sums and shapes again where nothing is compiled.
 tests: setup
-	$(TESTS) --dist loadfile
+	$(TESTS) --dist worksteal
 	NUMBA_DISABLE_JIT=1 $(TESTS) --dist loadfile $(UNCOMPILED)
 
 test-all: test
@@ -67,7 +67,7 @@ $(READY):
 	@$(PYTHON) -m venv $(VENV) || { rm -rf $(VENV); \
 	  echo "$(PYTHON) cannot make a virtual environment; on Debian and Ubuntu: apt-get install python3-venv"; exit 1; }
 	@echo "installing the locked packages into $(VENV) (once, about a minute)"
-	@$(BIN)/python -m pip install --quiet --no-compile --disable-pip-version-check --require-hashes -r requirements.lock
+	@$(BIN)/python -m pip install --quiet --no-compile --no-deps --disable-pip-version-check --require-hashes -r requirements.lock
 	@$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-deps --no-build-isolation -e .
 	@cp requirements.lock $(READY)
 

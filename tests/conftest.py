@@ -13,13 +13,12 @@ import numba
 import pytest
 import xarray as xr
 from batches import CURVES, STATISTICS, write_scene
+from forms import COMPILED
 from numba.core.event import Listener, register
 
 import roughmdr as rm
 from roughmdr.shapes import SHAPES, Shape
 
-COMPILED = {"paraboloid", "sphere", "truncated_cone", "tabulated"}
-"""Shapes whose tests are no long forms where functions are compiled; those of the others run uncompiled instead."""
 COMPILING = ("aggregate", "asperity", "batch", "expected", "interaction", "kernels", "shapes", "springs")
 """Folders whose tests compile functions of the shapes that they name."""
 _PARTS = re.compile("|".join(sorted(SHAPES, key=len, reverse=True)))

@@ -1,4 +1,4 @@
-"""Tests, and cases of tests, that are long forms, which ``make test-all`` runs."""
+"""Tests and cases that are long forms, which ``make test-all`` runs."""
 
 from collections.abc import Callable
 from typing import Any
@@ -6,6 +6,9 @@ from typing import Any
 import numba
 import pytest
 from _pytest.mark import ParameterSet
+
+COMPILED = {"paraboloid", "sphere", "truncated_cone", "tabulated"}
+"""Shapes whose tests are no long forms where functions are compiled; those of the others run uncompiled instead."""
 
 
 def large(*values: object) -> ParameterSet:

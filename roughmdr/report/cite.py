@@ -57,7 +57,7 @@ def cite(target: "str | Path | xr.Dataset | Scene", *, bibtex: bool = False) -> 
     >>> result = rm.run({
     ...     "title": "One patch", "material": {"effective_modulus": "1 GPa"}, "path": {"separation": ["3 um", "2 um"]},
     ...     "asperities": {
-    ...         "source": "random", "shape": "cone", "count": 500, "patch": "1 mm", "slope": 0.1,
+    ...         "source": "random", "shape": "sphere", "count": 500, "patch": "1 mm", "radius": "50 um",
     ...         "height": {"distribution": "normal", "std": "1 um"},
     ...     },
     ... })

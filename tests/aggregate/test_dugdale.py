@@ -9,6 +9,7 @@ import tomli_w
 import xarray as xr
 from click.testing import CliRunner
 from figures import adhesion_range as study
+from forms import large
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from mpmath import mp
@@ -142,7 +143,7 @@ def test_the_work_of_a_closed_cycle_is_what_the_jumps_dissipate(kind: str) -> No
         assert np.median(np.abs(moved - done)) < 1e-6 * scale
 
 
-@pytest.mark.parametrize("reach", [1e-6, 0.1, 1e10, 1e20])
+@pytest.mark.parametrize("reach", [large(1e-6), large(0.1), 1e10, large(1e20)])
 def test_a_range_in_which_a_contact_would_be_lost_is_refused(reach: float) -> None:
     """Else the force of a punch, P/(2 E*) = b delta - beta/2 (a m + b^2 theta), is right to the stated error."""
     b, beta, effective_modulus = 1e-6, 2e-3, 1e9

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 import scipy.stats
+from forms import large
 from scenes import ASPERITIES, ensemble
 
 import roughmdr as rm
@@ -82,12 +83,12 @@ def test_the_same_seed_gives_the_same_bits_and_streams_do_not_mix() -> None:
 @pytest.mark.parametrize(
     ("shape", "parameters"),
     [
-        ("cone", {"slope": {"distribution": "uniform", "loc": 0.1, "scale": 0.2}}),
-        (
+        ("truncated_cone", {"slope": {"distribution": "uniform", "loc": 0.1, "scale": 0.2}, "flat_radius": "1 um"}),
+        large(
             "power_law",
             {"exponent": 3, "width": "10 um", "rise": {"distribution": "lognormal", "mean": "1 um", "std": "1 um"}},
         ),
-        ("power_law", {"exponent": {"distribution": "uniform", "loc": 1, "scale": 2}, "coefficient": 1e3}),
+        large("power_law", {"exponent": {"distribution": "uniform", "loc": 1, "scale": 2}, "coefficient": 1e3}),
     ],
 )
 def test_other_shapes(shape: str, parameters: dict[str, object]) -> None:

@@ -4,18 +4,17 @@ from pathlib import Path
 
 import pytest
 import xarray as xr
-from forms import large
+from forms import COMPILED, large
 from stated_error import STUDY
 from studies.stated_error import judge as study
 from studies.stated_error.report import report
-from studies.stated_error.scenes import ESTIMATORS, scene
+from studies.stated_error.scenes import ESTIMATORS, RandomScene, scene
 
 ONE_OF_EACH = (0, 11, 9, 10)  # expected, sampled with JKR's and with adhesion of finite range, stratified
 
 
-def judge_random_scenes(count: int) -> None:
-    """Check that the stated error is a bound in so many scenes, of which none is refused."""
-    drawn = [scene(number) for number in range(count)]
+def judge_random_scenes(drawn: list[RandomScene]) -> None:
+    """Check that the stated error is a bound in all scenes, of which none is refused."""
     result = study.as_dataset(drawn, [study.judge(one) for one in drawn])
     assert result.attrs["refused"] == 0
     assert result.honest.all(), report(result)
@@ -25,12 +24,12 @@ def judge_random_scenes(count: int) -> None:
 
 
 def test_the_stated_error_is_honest() -> None:
-    judge_random_scenes(12)
+    judge_random_scenes([one for one in map(scene, range(30)) if one.shape in COMPILED])
 
 
 @pytest.mark.large
 def test_the_stated_error_of_many_scenes_is_honest() -> None:
-    judge_random_scenes(study.SCENES)
+    judge_random_scenes([scene(number) for number in range(study.SCENES)])
 
 
 @pytest.mark.large

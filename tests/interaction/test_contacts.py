@@ -22,7 +22,7 @@ from roughmdr.shapes.base import Shape
 EXAMPLES: dict[str, Shape] = {
     "paraboloid": rm.Paraboloid(radius=0.7),
     "cone": rm.Cone(slope=0.3),
-    "quartic": rm.PowerLaw(exponent=4.0, coefficient=2.0),
+    "power_law": rm.PowerLaw(exponent=4.0, coefficient=2.0),
     "rough tip": rm.PowerLaw(exponent=1.3, width=0.2, rise=0.05),
     "sphere": rm.Sphere(radius=0.9),
     "truncated_cone": rm.TruncatedCone(slope=0.3, flat_radius=0.05),

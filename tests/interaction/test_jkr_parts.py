@@ -33,7 +33,7 @@ WORK = 1e-9
 EXAMPLES: dict[str, Shape] = {
     "paraboloid": rm.Paraboloid(radius=0.7),
     "cone": rm.Cone(slope=0.02),
-    "quartic": rm.PowerLaw(exponent=4.0, coefficient=1e4),
+    "power_law": rm.PowerLaw(exponent=4.0, coefficient=1e4),
     "sphere": rm.Sphere(radius=0.9),
     "flat_punch": rm.FlatPunch(radius=2e-3),
     "truncated_cone": rm.TruncatedCone(slope=0.02, flat_radius=1e-3),

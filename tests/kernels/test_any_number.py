@@ -3,6 +3,7 @@
 import numba
 import numpy as np
 import pytest
+from forms import large_where_compiled
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -85,6 +86,7 @@ def test_pull_off(
     assert (off.contact_radius > 0.0) == (work > 0.0)
 
 
+@large_where_compiled
 @given(values=st.lists(st.floats(-1.0, 1000.0), min_size=1, max_size=5), kind=st.sampled_from(sorted(KINDS)))
 @settings(deadline=None, max_examples=100)
 def test_ordinary_numbers_are_never_refused(values: list[float], kind: str) -> None:

@@ -67,7 +67,7 @@ def test_the_oracle_fulfils_the_definitions(exponent: float) -> None:
     )
 
 
-def test_a_contact_so_small_that_its_square_is_no_float_is_refused() -> None:
+def test_a_contact_of_a_power_law_so_small_that_its_square_is_no_float_is_refused() -> None:
     shape = rm.PowerLaw(exponent=0.5107, width=0.08, rise=3.2e-5)
     with pytest.raises(rm.OutOfRange, match="representable"):
         rm.indent(

@@ -138,6 +138,7 @@ def test_every_number_has_a_unit_and_a_name_and_goes_to_a_file(result: xr.Datase
         assert (tmp_path / "one.png").stat().st_size > 5000
 
 
+@pytest.mark.large
 def test_the_scene_of_shapes_agrees_with_single_asperities() -> None:
     scene = tomllib.loads((PIPELINES / "scenes" / "shape_and_pull_off.toml").read_text())
     scene["batch"]["realizations"] = 2

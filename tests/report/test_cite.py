@@ -8,6 +8,7 @@ from typing import Any
 import pytest
 import tomli_w
 from click.testing import CliRunner
+from forms import large
 from scenes import ASPERITIES, scene
 
 import roughmdr as rm
@@ -76,7 +77,7 @@ def test_papers_in_docstrings_are_the_same() -> None:
             {"adhesion": {"model": "dugdale", "work": 0.05, "strength": "5 MPa"}},
             {"Hertz1882", "Maugis1992", "Dugdale1960", "Tabor1977", "Greenwood1966"},
         ),
-        (
+        large(
             {"asperities": {**DRAWN, "shape": "flat_punch", "radius": "2 um"}},
             {"Johnson1971", "Kendall1971", "Greenwood1966"},
         ),

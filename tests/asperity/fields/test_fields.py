@@ -345,6 +345,7 @@ def largest_on_a_grid(shape: Shape, nu: float, **given: Any) -> float:
     return float(rm.axis_stress(shape, z=z, effective_modulus=E, poisson=nu, **given).shear.max())
 
 
+@large_where_compiled
 @pytest.mark.few(3)
 @pytest.mark.parametrize("nu", [-0.9, 0.0, 0.5])
 @pytest.mark.parametrize("work", [0.0, WORK, 1.0])
