@@ -28,7 +28,7 @@ test: setup
 
 # The tests, and those of kernels, sums and shapes again where nothing is compiled.
 tests: setup
-	$(TESTS) --dist worksteal
+	$(TESTS) --dist loadfile
 	NUMBA_DISABLE_JIT=1 $(TESTS) --dist loadfile $(UNCOMPILED)
 
 test-all: test
