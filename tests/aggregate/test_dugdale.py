@@ -2,6 +2,7 @@
 
 import json
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -169,12 +170,17 @@ def test_a_range_in_which_a_contact_would_be_lost_is_refused(reach: float) -> No
     assert np.abs(curve.force - expected).max() <= float(curve.numerical_error) * np.abs(expected).max()
 
 
+def attracting_spheres(radius: float, reach: float, beta: float) -> dict[str, Any]:
+    """Return arguments under which the range of adhesion is ``reach`` radii, and 2 strength/E* is ``beta``."""
+    strength = 0.5 * beta * E
+    return {"effective_modulus": E, "work": reach * radius * strength, "adhesion": "dugdale", "strength": strength}
+
+
 @pytest.mark.parametrize(("reach", "beta"), [(0.3, 0.1), (0.87, 4.7)])
 def test_the_cohesive_zone_ends_with_the_sphere(reach: float, beta: float) -> None:
-    """P and k are Maugis's with c = R, and the work of the force is the energy stored and lost."""
-    radius, strength = 2e-6, 0.5 * beta * E
-    sphere = rm.Sphere(radius)
-    law = {"effective_modulus": E, "work": reach * radius * strength, "adhesion": "dugdale", "strength": strength}
+    """P and k are Maugis's with c = R."""
+    radius = 2e-6
+    sphere, law = rm.Sphere(radius), attracting_spheres(radius, reach, beta)
     contact = rm.indent(sphere, indentation=np.linspace(1.5, 5.0, 8) * radius, **law)
     a = contact.contact_radius.to_numpy()
     m, theta = np.sqrt((radius - a) * (radius + a)), np.arccos(a / radius)
@@ -184,10 +190,14 @@ def test_the_cohesive_zone_ends_with_the_sphere(reach: float, beta: float) -> No
     np.testing.assert_allclose(contact.force, 2.0 * E * pushed, rtol=1e-11)
     np.testing.assert_allclose(contact.stiffness, 2.0 * E * a, rtol=1e-11)
 
+
+@pytest.mark.large
+@pytest.mark.parametrize(("reach", "beta"), [(0.3, 0.1), (0.87, 4.7)])
+def test_the_work_done_on_a_sphere_to_its_last_zone_is_energy_stored_and_lost(reach: float, beta: float) -> None:
+    radius = 2e-6
+    sphere, law = ensemble([0.0], shape="sphere", radius=radius), attracting_spheres(radius, reach, beta)
     way = -np.linspace(-1.01 * reach, 3.0, 4001) * radius
-    curve = rm.load_separation(
-        ensemble([0.0], shape="sphere", radius=radius), separation=way, variables=VARIABLES, **law
-    )
+    curve = rm.load_separation(sphere, separation=way, variables=VARIABLES, **law)
     assert (np.diff(curve.dissipated_energy) >= 0.0).all()
     moved = np.diff(curve.energy) + np.diff(curve.dissipated_energy)
     done = -0.5 * (curve.force.to_numpy()[1:] + curve.force.to_numpy()[:-1]) * np.diff(way)

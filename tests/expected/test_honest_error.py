@@ -10,7 +10,9 @@ from studies.stated_error import judge as study
 from studies.stated_error.report import report
 from studies.stated_error.scenes import ESTIMATORS, RandomScene, scene
 
-ONE_OF_EACH = (0, 11, 9, 10)  # expected, sampled with JKR's and with adhesion of finite range, stratified
+DEAR = 9
+"""Number of a scene with adhesion of finite range, whose reference takes seconds."""
+ONE_OF_EACH = (0, 11, DEAR, 10)  # expected, sampled with JKR's and with adhesion of finite range, stratified
 
 
 def judge_random_scenes(drawn: list[RandomScene]) -> None:
@@ -24,7 +26,7 @@ def judge_random_scenes(drawn: list[RandomScene]) -> None:
 
 
 def test_the_stated_error_is_honest() -> None:
-    judge_random_scenes([one for one in map(scene, range(30)) if one.shape in COMPILED])
+    judge_random_scenes([one for one in map(scene, range(16)) if one.shape in COMPILED and one.number != DEAR])
 
 
 @pytest.mark.large
@@ -44,7 +46,7 @@ def test_the_study_is_carried_out(tmp_path: Path, monkeypatch: pytest.MonkeyPatc
     assert (tmp_path / "stated_error.png").stat().st_size > 20_000
 
 
-@pytest.mark.parametrize("number", [large(number) if number == 9 else number for number in ONE_OF_EACH])
+@pytest.mark.parametrize("number", [large(number) if number == DEAR else number for number in ONE_OF_EACH])
 def test_the_judge_finds_forces_that_are_off_by_a_few_stated_errors(number: int) -> None:
     assert study.judge(scene(number)).honest
     assert not study.judge(scene(number), disturbance=3.0).honest
