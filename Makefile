@@ -6,6 +6,7 @@
 PYTHON ?= python3
 VENV   := .venv
 BIN    := $(VENV)/bin
+RUNS   := $(VENV)/runs
 READY  := $(VENV)/ready
 # Images of containers often forbid bytecode; each of many processes would compile all that it imports anew.
 export PYTHONDONTWRITEBYTECODE :=
@@ -15,9 +16,9 @@ UNCOMPILED := $(addprefix tests/,asperity kernels numerics shapes springs \
   $(addsuffix .py,$(addprefix aggregate/test_,few_searches machine shapes_in_ensembles sum) \
   $(addprefix interaction/test_,close contacts green jkr_parts jkr_shapes)))
 
-.PHONY: demo test test-all tests docs studies studies-full setup lint lock release clean
+.PHONY: demo test test-all tests docs studies studies-full installed setup lint lock release clean
 
-demo: setup
+demo: installed
 	@mkdir -p results
 	@$(BIN)/roughmdr run pipelines/scenes/rubber_on_glass.toml -o results/rubber_on_glass.nc --fresh
 	@$(BIN)/roughmdr plot results/rubber_on_glass.nc -o results/rubber_on_glass.png --with-expected
@@ -52,29 +53,38 @@ lint: setup
 # Every file of every installed package is still there.
 INTACT := import sys; from importlib.metadata import distributions; \
   sys.exit(any(not file.locate().exists() for package in distributions() for file in package.files or []))
+INSTALL := $(BIN)/python -m pip install --quiet --disable-pip-version-check --no-deps
 
-# A set-up counts only when it was finished from this lock file by a Python that still runs.
-setup:
-	@if ! cmp -s requirements.lock $(READY) || \
+# Install what runs need. It counts only when it was finished from these lock files by a Python that still runs.
+installed:
+	@if ! cmp -s requirements-run.lock $(RUNS) || { test -e $(READY) && ! cmp -s requirements.lock $(READY); } || \
 	  ! { $(BIN)/python -c "$(INTACT)" && $(BIN)/roughmdr --version; } >/dev/null 2>&1; then \
-	  $(MAKE) --no-print-directory $(READY); fi
+	  $(MAKE) --no-print-directory $(RUNS); fi
 
-.PHONY: $(READY)
-$(READY):
+# Install what tests and docs need as well.
+setup: installed
+	@if ! test -e $(READY); then \
+	  echo "installing the packages of tests and docs (once, half a minute)"; \
+	  rm $(RUNS) && $(INSTALL) --no-compile --require-hashes -r requirements.lock \
+	  && cp requirements.lock $(READY) && cp requirements-run.lock $(RUNS); fi
+
+.PHONY: $(RUNS)
+$(RUNS):
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' \
 	  || { echo "roughmdr needs Python 3.11 or newer: make PYTHON=python3.12"; exit 1; }
 	@rm -rf $(VENV)
 	@$(PYTHON) -m venv $(VENV) || { rm -rf $(VENV); \
 	  echo "$(PYTHON) cannot make a virtual environment; on Debian and Ubuntu: apt-get install python3-venv"; exit 1; }
-	@echo "installing the locked packages into $(VENV) (once, about a minute)"
-	@$(BIN)/python -m pip install --quiet --no-compile --no-deps --disable-pip-version-check --require-hashes -r requirements.lock
-	@$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-deps --no-build-isolation -e .
-	@cp requirements.lock $(READY)
+	@echo "installing the locked packages into $(VENV) (once, half a minute)"
+	@$(INSTALL) --no-compile --require-hashes -r requirements-run.lock
+	@$(INSTALL) --no-build-isolation -e .
+	@cp requirements-run.lock $(RUNS)
 
-# Renew the lock file: versions and hashes, no addresses. Needs uv.
+# Renew the lock files, of all packages and of those that runs need: versions and hashes, no addresses. Needs uv.
+COMPILE := uv pip compile --universal --generate-hashes --python-version 3.11 --no-header --no-annotate
 lock:
-	uv pip compile --universal --generate-hashes --python-version 3.11 --no-header --no-annotate \
-	  --group dev pyproject.toml -o requirements.lock
+	$(COMPILE) --group dev pyproject.toml -o requirements.lock
+	$(COMPILE) --group build --extra cluster -c requirements.lock pyproject.toml -o requirements-run.lock
 
 # Test at length, tag a version, build its wheel and source archive into dist/; nothing is uploaded: make release VERSION=0.1.0.
 release: test-all
