@@ -2,7 +2,7 @@
 # make test-all: the long forms of tests as well, some forty minutes more.
 # make docs: build the documentation into docs/_build/html, examples and all.
 # make studies: measure error against run time, the extremes, and what leaving out saves, in reduced forms that say what
-# they leave out, some seven minutes; report in results/studies. make studies-full: all of it, about an hour.
+# they leave out, three minutes and compiling; report in results/studies. make studies-full: all of it, about an hour.
 PYTHON ?= python3
 VENV   := .venv
 BIN    := $(VENV)/bin
