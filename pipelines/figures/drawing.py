@@ -7,7 +7,7 @@ from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
 
 from roughmdr.numerics.arguments import Floats
-from roughmdr.pictures.coils import coils
+from roughmdr.pictures.asperity import coils
 
 BODY, LINE = "#e4e0d8", "#4a4a4a"
 COMPRESSED, STRETCHED, FREE = "#1b6ca8", "#c8553d", "#9a9a9a"

@@ -8,19 +8,20 @@ import numpy as np
 from roughmdr.aggregate import loop, totals
 from roughmdr.aggregate.detachment import detachments
 from roughmdr.aggregate.law import PER_AREA, LoadSeparation, effective_number
-from roughmdr.aggregate.mean_field import couple, of_independent
-from roughmdr.aggregate.neighbours import are_few, neighbours_error
-from roughmdr.aggregate.pull_off import pull_off_of
+from roughmdr.aggregate.loop import sum_over_asperities
+from roughmdr.aggregate.mean_field import couple, coupling_in, of_independent, shift
+from roughmdr.aggregate.neighbours_error import are_few, neighbours_error
 from roughmdr.aggregate.tabor import jkr_validity
+from roughmdr.aggregate.totals import AREA, COUNT, FORCE
 from roughmdr.ensemble.ensemble import Ensemble
 from roughmdr.errors import SceneError
-from roughmdr.interaction.mean_field import coupling_in, shift
 from roughmdr.interaction.placed import check_placed
 from roughmdr.interaction.settings import Interaction, reason_against_adhesion
 from roughmdr.kernels.adhesion import Adhesion
 from roughmdr.kernels.choose import choose
-from roughmdr.kernels.interface import Columns
+from roughmdr.kernels.interface import Columns, Kernels
 from roughmdr.loading.path import LoadingPath
+from roughmdr.loading.pull_off import WITHOUT_TENSION, PullOff, locate, unloadings
 from roughmdr.loading.pull_off import prepare as prepare_pull_off
 from roughmdr.loading.staircase import no_memory
 from roughmdr.model_error import Assumptions, Givens, crowd_warnings
@@ -165,3 +166,39 @@ def prepare(
             prepare_pull_off()
     if adhesion.work > 0.0:
         jkr_validity(shape, 0.0, columns, 1.0, adhesion._replace(work=1.0, strength=1.0))
+
+
+def pull_off_of(
+    kernels: Kernels,
+    height: Floats,
+    columns: Columns,
+    effective_modulus: float,
+    adhesion: Adhesion,
+    path: LoadingPath,
+    force: Floats,
+) -> PullOff:
+    """Return the pull-off along a path, given the force [N] at its steps; height [m] descends.
+
+    NaN where no unloading ends with all contacts parted: there, and only there, the force is exactly 0.
+    """
+    rises = unloadings(path.separation, force)
+    if not any(rise.force[-1] == 0.0 for rise in rises):
+        return PullOff()
+    closest = float(path.separation.min()) - adhesion.range
+    count = int(np.count_nonzero(height >= closest))
+    if not (kernels.adhesive and count):
+        return WITHOUT_TENSION
+    top, few = height[:count], Columns(*(column[:count] for column in columns))
+    depths = detachments(kernels, few, effective_modulus, adhesion).depth
+
+    def sums(along: LoadingPath, rows: set[int]) -> Floats:
+        total, _, _ = sum_over_asperities(
+            kernels, top, few, effective_modulus, adhesion, along.separation, along.memory, rows
+        )
+        return total
+
+    found = locate(rises, lambda along: sums(along, {FORCE})[FORCE], np.sort(top + depths))
+    if found is None:
+        return WITHOUT_TENSION
+    there = sums(found.path, {COUNT, AREA})[:, -1]
+    return PullOff(found.force, float(found.path.separation[-1]), float(there[COUNT]), float(there[AREA]))

@@ -96,7 +96,7 @@ def law_on_machine(
 
     Those are inf where a dead load has pulled the flat off; it is then held at ``clear`` [m], or higher.
     """
-    from roughmdr.interaction.jkr.machine_path import solve_on_machine
+    from roughmdr.interaction.jkr.machine import solve_on_machine
 
     validity = jkr_validity(ensemble.shape, ensemble.spread, ensemble.nondimensional(), effective_modulus, adhesion)
     judged, reach = set(_judged(ensemble, names)), _reach(ensemble, validity)

@@ -7,10 +7,10 @@ from numpy.typing import NDArray
 
 from roughmdr.aggregate import loop, totals
 from roughmdr.aggregate.compute import check_asked, compute
+from roughmdr.aggregate.mean_field import coupling_in
 from roughmdr.aggregate.tabor import jkr_validity
 from roughmdr.ensemble.ensemble import Ensemble
 from roughmdr.errors import OutOfRange
-from roughmdr.interaction.mean_field import coupling_in
 from roughmdr.interaction.settings import Interaction
 from roughmdr.kernels.adhesion import Adhesion
 from roughmdr.kernels.choose import choose

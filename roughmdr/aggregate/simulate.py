@@ -1,20 +1,18 @@
 """The law of an ensemble along a path of the flat, or of the machine that moves it."""
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 
 import numpy as np
 
 from roughmdr.aggregate.compute import check_asked, compute
 from roughmdr.aggregate.detachment import clear_separation
 from roughmdr.aggregate.law import LoadSeparation
-from roughmdr.aggregate.machine_loss import machine_loss
-from roughmdr.aggregate.mean_field import of_independent
+from roughmdr.aggregate.mean_field import ForceAndStiffness, coupling_in, of_independent, shift
 from roughmdr.aggregate.preload import Specimen, to_preload
 from roughmdr.aggregate.tabor import jkr_validity
 from roughmdr.aggregate.under_machine import separations_of
 from roughmdr.ensemble.ensemble import Ensemble
 from roughmdr.errors import OutOfRange
-from roughmdr.interaction.mean_field import ForceAndStiffness, coupling_in, shift
 from roughmdr.interaction.settings import Interaction
 from roughmdr.kernels.adhesion import Adhesion
 from roughmdr.kernels.choose import choose
@@ -146,3 +144,36 @@ def _under_mean_field(independent: ForceAndStiffness, path: MachinePath, couplin
     """
     found = shift(independent, path.demand, coupling + path.machine.compliance)
     return np.asarray(path.demand + path.machine.compliance * found.force)
+
+
+def machine_loss(
+    machine: Machine,
+    jumps: list[Jump],
+    separation: Floats,
+    clear: float,
+    along: Callable[[Floats, list[str]], LoadSeparation],
+) -> Floats:
+    """Return the energy [J] that the machine loses up to each step, of the path with these separations [m].
+
+    In a jump at one demand the energy of the contacts and of the machine falls. Contacts that are made or
+    parted on the way lose a part of that, as under fixed grips; the rest sets the flat in motion, and the machine loses
+    it.
+
+    A flat that a dead load pulls off is followed up to ``clear`` [m], where no contact is left. ``along`` returns the
+    law along separations [m].
+    """
+    step = np.array([jump.step for jump in jumps])
+    demand = np.array([jump.demand for jump in jumps])
+    limits = np.array([[jump.before, jump.after] for jump in jumps])
+    limits[np.isinf(limits)] = clear
+    position = np.repeat(step, 2)  # each jump comes before its step
+    whole = np.insert(separation, position, limits.ravel())
+    first = np.searchsorted(position, np.arange(separation.size), side="right") + np.arange(separation.size)
+    at = np.setdiff1d(np.arange(whole.size), first).reshape(-1, 2)
+    found = along(whole, ["force", "energy", "dissipated_energy"]).variables
+    energy = found["energy"] + found["dissipated_energy"]
+    before, after = at.T
+    lost = (
+        energy[before] - energy[after] + (machine.energy(limits[:, 0], demand) - machine.energy(limits[:, 1], demand))
+    )
+    return np.cumsum(np.bincount(step, lost, separation.size))

@@ -169,7 +169,7 @@ class Analysis:
         return self._at("separation", separation, branch)
 
     def _at(self, name: str, values: ArrayLike, branch: str, reference: bool = False) -> "xr.Dataset":
-        from roughmdr.analysis.interpolation import at_value
+        from roughmdr.result.interpolation import at_value
 
         return at_value(self._dataset, f"reference_{name}" if reference else name, values, branch)
 
@@ -293,8 +293,8 @@ class Analysis:
         >>> [axes.get_ylabel() for axes in result.roughmdr.plot(variables="contact_count").axes]
         ['contact count']
         """
-        from roughmdr.analysis.curves import check_result
         from roughmdr.pictures.plot import plot
+        from roughmdr.result.curves import check_result
 
         check_result(self._dataset)
         return plot(self._dataset, *args, **kwargs)

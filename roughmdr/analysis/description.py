@@ -5,10 +5,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from roughmdr.analysis.curves import control_of, curves_of, is_ensemble, is_reference, is_result, keeps_statistics
 from roughmdr.analysis.pull_off import pull_off
 from roughmdr.analysis.trust import trust_lines
 from roughmdr.errors import StoreError
+from roughmdr.result.curves import control_of, curves_of, is_ensemble, is_reference, is_result, keeps_statistics
 from roughmdr.schema.units import format_quantity
 from roughmdr.schema.wording import printable
 from roughmdr.variables import AUXILIARY_COORDINATES, BRANCHES, LATERAL, STEP_COORDINATES

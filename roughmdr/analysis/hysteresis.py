@@ -5,8 +5,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from roughmdr.analysis.curves import Legs, alone, check_result, control_of, curve, separation_of
 from roughmdr.numerics.arguments import Floats
+from roughmdr.result.curves import Legs, alone, check_result, control_of, curve, separation_of
 from roughmdr.variables import BRANCHES, LATERAL
 
 if TYPE_CHECKING:

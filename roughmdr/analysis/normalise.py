@@ -10,11 +10,11 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from roughmdr.analysis.cells import of_cells
-from roughmdr.analysis.curves import check_result, control_of
 from roughmdr.ensemble import NayakAsperities, RandomAsperities
 from roughmdr.ensemble.nodes import Rule
 from roughmdr.errors import StoreError
+from roughmdr.result.cells import of_cells
+from roughmdr.result.curves import check_result, control_of
 from roughmdr.scene import Scene
 from roughmdr.schema.wording import short_repr
 

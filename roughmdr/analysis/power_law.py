@@ -5,10 +5,10 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from roughmdr.analysis.curves import Legs, alone, check_result, control_of, curve
 from roughmdr.batch.moments import mean_and_error
 from roughmdr.errors import StoreError
 from roughmdr.numerics.arguments import Floats
+from roughmdr.result.curves import Legs, alone, check_result, control_of, curve
 from roughmdr.schema.arguments import check_values
 from roughmdr.schema.wording import short_repr
 

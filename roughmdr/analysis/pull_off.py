@@ -4,10 +4,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from roughmdr.analysis.curves import check_result
 from roughmdr.batch.moments import mean_and_error
 from roughmdr.errors import StoreError
 from roughmdr.numerics.arguments import Floats
+from roughmdr.result.curves import check_result
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -7,12 +7,12 @@ import numpy as np
 import tomli_w
 from numpy.typing import NDArray
 
-from roughmdr.analysis.cells import of_cells
-from roughmdr.analysis.curves import check_result, control_of, curves_of, keeps_statistics
 from roughmdr.batch.moments import moments_of
 from roughmdr.errors import StoreError
 from roughmdr.loading.path import LoadingPath
 from roughmdr.numerics.arguments import Floats
+from roughmdr.result.cells import of_cells
+from roughmdr.result.curves import check_result, control_of, curves_of, keeps_statistics
 from roughmdr.scene import Scene
 from roughmdr.schema.toml_text import parse_toml
 from roughmdr.variables import DONE, PULL_OFF, REMOTE, RUN_DIAGNOSTICS, RUN_VARIABLES, SEPARATION, TRAVEL

@@ -2,10 +2,10 @@
 
 from typing import TYPE_CHECKING
 
-from roughmdr.analysis.curves import check_result
 from roughmdr.errors import StoreError
 from roughmdr.model_error.parts import PARTS
-from roughmdr.report.trust import trust_of_result
+from roughmdr.result.curves import check_result
+from roughmdr.result.trust import trust_of_result
 from roughmdr.schema.wording import format_table
 from roughmdr.storage.labelled import Labelled
 

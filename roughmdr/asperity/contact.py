@@ -11,9 +11,9 @@ from roughmdr.kernels.adhesion import Adhesion
 from roughmdr.kernels.choose import choose
 from roughmdr.kernels.elementwise import apply, apply_all
 from roughmdr.kernels.interface import Columns, Kernels
-from roughmdr.kernels.profile.exact_fold import exact_depth
-from roughmdr.kernels.profile.layout import COUNT
+from roughmdr.kernels.profile.layout import CONTROL, COUNT, FOLD
 from roughmdr.numerics.arguments import Floats
+from roughmdr.numerics.double_double import Pair
 from roughmdr.shapes import ProfileShape, Shape
 
 Results = dict[str, Floats]
@@ -211,3 +211,20 @@ def prepared(law: Kernels, shape: Shape, effective_modulus: float, adhesion: Adh
     width, rise, params = (np.asarray(part, dtype=np.float64)[None] for part in shape.nondimensional())
     material = law.material(effective_modulus, adhesion)
     return law.params_of(law.prepare(material, Columns(width, rise, params), 0, 1, control, math.inf), 0)
+
+
+def exact_depth(shape: ProfileShape, effective_modulus: float, work: float, params: Floats) -> Pair:
+    """Minus the indentation [m] (fixed grips) or minus the force [N] (dead load) at detachment, as two floats.
+
+    These are dl(a) - g(a) and 2 E* [a dl(a) - (a g - G)] at the lowest foot of the row (H 40-41, 44).
+
+    The quantity is stationary there, so that the rounding of t does not matter. At the distance X to the fold, an error
+    of the fold is magnified by 1/sqrt(X) in radius, force and stiffness.
+    """
+    from mpmath import mp
+
+    a, g, push = shape.precisely(float(params[FOLD]))
+    with mp.workdps(40):
+        stretch = mp.sqrt(2 * mp.pi * a * mp.mpf(work) / mp.mpf(effective_modulus))
+        depth = stretch - g if params[CONTROL] == 0.0 else 2 * mp.mpf(effective_modulus) * (a * stretch - push)
+        return float(depth), float(depth - mp.mpf(float(depth)))

@@ -16,8 +16,8 @@ from roughmdr.cli.plot import plot
 from roughmdr.cli.report import report
 from roughmdr.cli.run import run
 from roughmdr.cli.schema import schema
+from roughmdr.cli.terminal import Group
 from roughmdr.cli.warm import warm
-from roughmdr.report.terminal import Group
 
 
 @click.group(cls=Group, context_settings={"help_option_names": ["-h", "--help"]})

@@ -6,7 +6,7 @@ import click
 
 from roughmdr.cli.invocation import warn_of
 from roughmdr.cli.options import FILE, OUTPUT, fresh_option, pairs
-from roughmdr.report.terminal import Command, print_note, print_text
+from roughmdr.cli.terminal import Command, print_note, print_text
 
 
 @click.command(cls=Command)

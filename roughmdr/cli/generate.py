@@ -6,8 +6,8 @@ import click
 
 from roughmdr.cli.invocation import command_line
 from roughmdr.cli.options import FILE, OUTPUT, changes_option, fresh_option
+from roughmdr.cli.terminal import Command, print_text
 from roughmdr.errors import SceneError
-from roughmdr.report.terminal import Command, print_text
 
 
 @click.command(cls=Command)

@@ -7,8 +7,8 @@ import click
 
 from roughmdr.cli.invocation import warn_of
 from roughmdr.cli.options import FILE, json_option
+from roughmdr.cli.terminal import Command, print_document, print_text
 from roughmdr.errors import StoreError
-from roughmdr.report.terminal import Command, print_document, print_text
 
 
 @click.command(cls=Command)

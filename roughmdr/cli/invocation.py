@@ -9,7 +9,7 @@ from pathlib import Path
 
 import click
 
-from roughmdr.report.terminal import print_note
+from roughmdr.cli.terminal import print_note
 
 
 @contextmanager

@@ -5,7 +5,7 @@ from pathlib import Path
 import click
 
 from roughmdr.cli.options import FILE, changes_option, json_option, workers_option
-from roughmdr.report.terminal import Command, print_document, print_text
+from roughmdr.cli.terminal import Command, print_document, print_text
 
 
 @click.command(cls=Command)

@@ -9,8 +9,8 @@ import click
 
 from roughmdr.cli.invocation import command_line, without_garbage_collection
 from roughmdr.cli.options import FILE, OUTPUT, changes_option, json_option, workers_option
+from roughmdr.cli.terminal import INCOMPLETE, Command, print_document, print_text
 from roughmdr.errors import RoughmdrError
-from roughmdr.report.terminal import INCOMPLETE, Command, print_document, print_text
 
 if TYPE_CHECKING:
     from roughmdr.runner.backend import Backend

@@ -5,7 +5,7 @@ from pathlib import Path
 import click
 
 from roughmdr.cli.options import OUTPUT, fresh_option
-from roughmdr.report.terminal import Command, print_text
+from roughmdr.cli.terminal import Command, print_text
 
 
 @click.command(cls=Command)

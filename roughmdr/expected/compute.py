@@ -10,7 +10,7 @@ from collections.abc import Iterable
 import numpy as np
 
 from roughmdr.aggregate import LoadingPath, LoadSeparation
-from roughmdr.aggregate.mean_field import couple
+from roughmdr.aggregate.mean_field import Shift, couple, coupling_of, mean_inverse_distance, shift
 from roughmdr.aggregate.tabor import jkr_validity
 from roughmdr.aggregate.totals import (
     AREA,
@@ -30,7 +30,6 @@ from roughmdr.errors import OutOfRange
 from roughmdr.expected.converge import FIRST_ORDER, WARNED_ERROR, converge, converge_at_kinks
 from roughmdr.expected.node import Problem, QuadratureNode, moved, set_up, totals_of, undecided_of
 from roughmdr.expected.pull_off import pull_off_of
-from roughmdr.interaction.mean_field import Shift, coupling_of, mean_inverse_distance, shift
 from roughmdr.interaction.settings import Interaction
 from roughmdr.kernels.adhesion import Adhesion
 from roughmdr.loading.staircase import no_memory

@@ -17,8 +17,8 @@ from roughmdr.aggregate.totals import AREA, COUNT, FORCE
 from roughmdr.ensemble import Source
 from roughmdr.ensemble.nodes import Rule
 from roughmdr.errors import OutOfRange
-from roughmdr.expected import weighted_sum as weighted
 from roughmdr.expected.compute import as_ensemble, compute
+from roughmdr.expected.curve import quantities_of
 from roughmdr.expected.height_rules import RULES, Points, points_of, rule_of
 from roughmdr.expected.node import Problem, QuadratureNode, set_up, totals_of
 from roughmdr.kernels.adhesion import Adhesion
@@ -35,6 +35,8 @@ _MOST_HEIGHTS = {"gauss": 100, "equal_fractions": 5_000}
 """Of one score of the shape parameters."""
 _SHARE_POWER = {"gauss": 2.0 / 7.0, "equal_fractions": 1.0}
 _GROWTH = 1.3
+_ROWS = (FORCE, AREA, COUNT)
+_AT_ONCE = 2**21  # contacts
 
 
 class FewAsperities(NamedTuple):
@@ -175,7 +177,7 @@ class _Search(NamedTuple):
         separation = self.problem.path.separation
         total = np.zeros_like(self.exact)
         for node, points in zip(nodes, heights, strict=True):
-            total += node.fraction * weighted.weighted_sum(node, points, separation)
+            total += node.fraction * weighted_sum(node, points, separation)
         return np.asarray(np.abs(total - self.exact).max(axis=1) / np.where(self.largest > 0.0, self.largest, 1.0))
 
 
@@ -195,3 +197,24 @@ def _growing(most: int) -> Iterator[int]:
         yield count
         count = math.ceil(_GROWTH * count)
     yield most
+
+
+def weighted_sum(node: QuadratureNode, rule: Points, separation: Floats) -> Floats:
+    """Return force [N], contact area [m2] and number in contact at each separation [m] of the node's path: [row, step].
+
+    The heights of ``rule`` are differences to the origin of those of the node, ascending.
+    """
+    y, weights = rule
+    steps, branches = node.in_contact.step, node.in_contact.branch
+    first, last = np.searchsorted(y, node.in_contact.begin), np.searchsorted(y, node.in_contact.end)
+    total = np.zeros((3, separation.size))
+    rows = max(1, _AT_ONCE // max(y.size, 1))
+    for begin in range(0, steps.size, rows):
+        part = np.arange(begin, min(begin + rows, steps.size))
+        sizes = np.maximum(last[part] - first[part], 0)
+        row = np.repeat(part, sizes)
+        number = np.arange(row.size) - np.repeat(np.cumsum(sizes) - sizes, sizes) + first[row]
+        indentation = y[number] - (separation[steps[row]] - node.heights.origin)
+        for quantity, values in enumerate(quantities_of(node.contact, indentation, branches[row], _ROWS)):
+            total[quantity] += np.bincount(steps[row], weights[number] * values, separation.size)
+    return total

@@ -10,7 +10,6 @@ import numpy as np
 from roughmdr.expected.heights import HeightTable
 from roughmdr.expected.table import ORDER
 from roughmdr.numerics.arguments import Floats
-from roughmdr.numerics.discrete_gauss import gauss_of_points
 from roughmdr.numerics.gauss import gauss
 
 RULES = ("gauss", "equal_fractions")
@@ -25,6 +24,7 @@ _NEGLIGIBLE = 1e-30  # of all heights
 
 Points = tuple[Floats, Floats]
 """Heights, ascending [m], and the fraction of all heights at each."""
+_NEGLIGIBLE = 1e-13  # of the spread: what is left of a vector is roundings
 
 
 def points_of(heights: HeightTable, lowest: float, count: int, name: str) -> Points:
@@ -79,3 +79,33 @@ def _gauss(points: Points, count: int) -> Points:
     tail = fractions[rest:]
     highest = y[rest] + float((tail * (y[rest:] - y[rest])).sum() / tail.sum())
     return np.append(nodes, highest), np.append(weights, tail.sum())
+
+
+def gauss_of_points(x: Floats, weights: Floats, count: int) -> tuple[Floats, Floats]:
+    """Return nodes, ascending, and weights of Gauss's rule for weighted points, with ``count`` nodes or one a point.
+
+    It integrates polynomials of degree 2 count - 1 exactly. Nodes are the eigenvalues of the Jacobi matrix of the
+    measure, weights follow from their vectors (G. H. Golub, J. H. Welsch, Math. Comp. 23 (1969) 221). The matrix is
+    found by Lanczos's recurrence, each vector orthogonalised anew against all before.
+    """
+    total = weights.sum()
+    centre = float((x * weights).sum() / total)
+    spread = float(np.sqrt(((x - centre) ** 2 * weights).sum() / total))
+    if not spread > 0.0 or count == 1:
+        return np.array([centre]), np.array([total])
+    at = (x - centre) / spread
+    vectors = [np.sqrt(weights / total)]
+    diagonal, beside = [], []
+    while True:
+        image = at * vectors[-1]
+        diagonal.append(float((image * vectors[-1]).sum()))
+        for _ in range(2):
+            for vector in vectors:
+                image = image - (image * vector).sum() * vector
+        length = float(np.sqrt((image * image).sum()))
+        if len(diagonal) == count or length < _NEGLIGIBLE:
+            break
+        beside.append(length)
+        vectors.append(image / length)
+    values, states = np.linalg.eigh(np.diag(diagonal) + np.diag(beside, 1) + np.diag(beside, -1))
+    return centre + spread * values, total * states[0] ** 2

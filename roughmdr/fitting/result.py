@@ -9,7 +9,7 @@ from roughmdr.fitting.residuals import relative_rms
 from roughmdr.fitting.search import Found
 from roughmdr.fitting.uncertainty import Uncertainty
 from roughmdr.loading.path import labelled_branches
-from roughmdr.report.trust import trust_lines
+from roughmdr.result.trust import trust_lines
 from roughmdr.storage.labelled import Array, Labelled
 from roughmdr.storage.result_file import FIT, provenance
 

@@ -12,7 +12,6 @@ import numpy as np
 from roughmdr.ensemble import Ensemble
 from roughmdr.errors import StoreError
 from roughmdr.numerics.arguments import Floats
-from roughmdr.pictures.coils import coils
 from roughmdr.pictures.one_contact import OneContact
 from roughmdr.pictures.snapshot import Snapshot
 from roughmdr.pictures.style import BRANCH_COLOURS, Scale, in_words, set_title
@@ -28,6 +27,8 @@ _COMPRESSED, _STRETCHED = BRANCH_COLOURS["loading"], BRANCH_COLOURS["unloading"]
 _SIZE = 7.4, 8.6  # of the figure [inches]
 _NEAR = 0.985  # of the contact radius, up to which the axis of pressure holds all
 _VISIBLE = 0.06  # of the height of a panel, above which a length is named
+_POINTS = 25  # of a spring
+_STRAIGHT = 2  # at each end
 
 
 def draw_asperity(
@@ -235,3 +236,12 @@ def _draw_pressure(ax: "Axes", contact: OneContact, length: Scale) -> None:
             ax.annotate(
                 "∞" if up else "−∞", (at, ends[up]), (4, -10 if up else 4), textcoords="offset points", fontsize=9
             )
+
+
+def coils(positions: Floats, ends: Floats, bottom: float, width: float) -> list[Floats]:
+    """Return each spring as a line, [point, 2], from ``bottom`` to its end, ``width`` to both sides."""
+    swing = np.zeros(_POINTS)
+    swing[_STRAIGHT:-_STRAIGHT:2], swing[_STRAIGHT + 1 : -_STRAIGHT : 2] = width, -width
+    return [
+        np.column_stack([x + swing, np.linspace(bottom, end, _POINTS)]) for x, end in zip(positions, ends, strict=True)
+    ]

@@ -6,8 +6,8 @@ from typing import NamedTuple
 from roughmdr.errors import StoreError
 from roughmdr.pictures.panel import MAX_NAMED
 from roughmdr.pictures.request import Content, Drawable, Picture, Request
-from roughmdr.pictures.select import along_longest, cell_of, pull_off_step, select
 from roughmdr.result.layout import asked_variables, cells_of, swept_sizes
+from roughmdr.result.select import along_longest, cell_of, pull_off_step, select
 from roughmdr.schema.wording import suggestion
 from roughmdr.storage.labelled import Labelled
 from roughmdr.variables import LAW_VARIABLES
@@ -60,7 +60,7 @@ def _selected(source: Drawable, request: Request) -> tuple[Labelled, str]:
 
 def _law(source: Drawable, request: Request) -> Picture:
     from roughmdr.pictures.law import LawOptions, draw_law
-    from roughmdr.pictures.reference import overlay_reference
+    from roughmdr.pictures.lines import overlay_reference
 
     result, note = _selected(source, request)
     if len(cells_of(result)) > MAX_NAMED and len(swept_sizes(result)) > 1:

@@ -11,9 +11,9 @@ from roughmdr.pictures.curves import Curve, Quantity, curves_of, drawn_against
 from roughmdr.pictures.lines import EXPECTED, REFERENCE, OverlayLine
 from roughmdr.pictures.panel import MAX_NAMED, MAX_RUNS, Mark, Panel, draw_panel
 from roughmdr.pictures.style import BRANCH_COLOURS, BRANCH_LINESTYLES, THEORY_COLOURS, Scale, colours, set_title
-from roughmdr.report.trust import trust_of_result
 from roughmdr.result.layout import cell_label, cells_of, done_of, realizations_in_words, realizations_of, swept_sizes
 from roughmdr.result.means import holds, mean_of
+from roughmdr.result.trust import trust_of_result
 from roughmdr.schema.quantities import adheres
 from roughmdr.schema.toml_text import parse_toml
 from roughmdr.schema.wording import escape_controls

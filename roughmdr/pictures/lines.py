@@ -3,9 +3,13 @@
 from typing import NamedTuple
 
 from roughmdr.numerics.arguments import Floats
+from roughmdr.result.layout import cells_of, controlled_values
+from roughmdr.result.means import holds, mean_of
+from roughmdr.storage.labelled import Labelled
 
 EXPECTED = "expected"
 REFERENCE = "boundary elements"
+_ABSENT = "the result holds no reference; run its scene with --set reference.model=boundary_elements"
 
 
 class OverlayLine(NamedTuple):
@@ -23,3 +27,17 @@ class Overlay(NamedTuple):
 
     lines: list[OverlayLine]
     remarks: list[str]
+
+
+def overlay_reference(result: Labelled, names: list[str]) -> Overlay:
+    """Return the mean law by boundary elements of each cell, in those of the variables that the result has of it."""
+    given = [name for name in names if holds(result, f"reference_{name}")]
+    if not given:
+        return Overlay([], [f"not drawn: {_ABSENT}"])
+    separation = controlled_values(result)
+    lines = [
+        OverlayLine(REFERENCE, name, number, separation[cell], mean_of(result, f"reference_{name}")[0][cell])
+        for name in given
+        for number, cell in enumerate(cells_of(result))
+    ]
+    return Overlay(lines, ["drawn"])

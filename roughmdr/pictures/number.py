@@ -77,7 +77,7 @@ def _of_curve(result: Labelled, name: str, request: Request) -> Number:
             raise StoreError(f"at is {place!r}, which is none{suggestion(place, list(_PLACES))}")
         if place == name:
             raise StoreError(f"at {place} = {value} does not go with {name} itself: name another variable")
-        from roughmdr.analysis.interpolation import at_value
+        from roughmdr.result.interpolation import at_value
 
         try:
             found = Labelled.of(at_value(result.to_xarray(), place, cast("ArrayLike", value), "loading"))

@@ -9,8 +9,8 @@ from roughmdr.numerics.arguments import Floats
 from roughmdr.pictures.number import Number, number_of
 from roughmdr.pictures.request import Request
 from roughmdr.pictures.style import BRANCH_COLOURS, COLOUR_MAP, Scale, set_title
-from roughmdr.report.trust import pull_off_error_of, trust_of_result
 from roughmdr.result.layout import cells_of, done_of, realizations_of, swept_sizes, swept_values
+from roughmdr.result.trust import pull_off_error_of, trust_of_result
 from roughmdr.schema.wording import escape_controls, suggestion
 from roughmdr.storage.labelled import Array, Labelled
 from roughmdr.variables import swept_name

@@ -11,7 +11,7 @@ from roughmdr.fitting.stored import given_fit
 from roughmdr.report import citations as papers
 from roughmdr.report import citations_of_layers as layer_papers
 from roughmdr.report.citations import Paper
-from roughmdr.report.given import given_result
+from roughmdr.result.given import given_result
 from roughmdr.result.layout import done_of
 from roughmdr.scene import Scene, read
 from roughmdr.schema.keywords import named_keywords

@@ -5,8 +5,8 @@ from typing import TYPE_CHECKING
 
 from roughmdr.fitting.stored import given_fit
 from roughmdr.fitting.words import describe_fit
-from roughmdr.report.given import given_result
 from roughmdr.report.summary import describe_cells, describe_origin, describe_result
+from roughmdr.result.given import given_result
 from roughmdr.schema.keywords import named_keywords
 from roughmdr.storage.labelled import Labelled
 

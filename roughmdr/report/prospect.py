@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from roughmdr.report.trust import trust_lines
+from roughmdr.result.trust import trust_lines
 from roughmdr.schema.units import format_quantity
 
 if TYPE_CHECKING:

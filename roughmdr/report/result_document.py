@@ -18,9 +18,9 @@ from roughmdr.report.documents import (
 from roughmdr.report.few_contacts import sample_of_result
 from roughmdr.report.reference import reference_lines
 from roughmdr.report.summary import describe_failed, first_remark, resolution_error
-from roughmdr.report.trust import trust_of_result
 from roughmdr.result import layout
 from roughmdr.result.means import holds, mean_of, pull_off_counts
+from roughmdr.result.trust import trust_of_result
 from roughmdr.storage.labelled import Array, Labelled
 from roughmdr.variables import STATUSES
 

@@ -14,8 +14,8 @@ from roughmdr.report.plausible import implausible_lines
 from roughmdr.report.prospect import prospect_lines
 from roughmdr.report.pull_off import describe_pull_off
 from roughmdr.report.reference import reference_lines
-from roughmdr.report.trust import trust_of_result
 from roughmdr.result import layout
+from roughmdr.result.trust import trust_of_result
 from roughmdr.schema.units import format_quantity
 from roughmdr.schema.wording import format_bytes, format_seconds, format_table, printable
 from roughmdr.storage.labelled import Array, Labelled

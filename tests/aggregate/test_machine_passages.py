@@ -7,8 +7,7 @@ import pytest
 import xarray as xr
 
 import roughmdr as rm
-from roughmdr.aggregate import machine_leg
-from roughmdr.aggregate.under_machine import separations_of
+from roughmdr.aggregate.under_machine import follow, separations_of
 from roughmdr.ensemble.ensemble import Ensemble
 from roughmdr.kernels.adhesion import Adhesion
 from roughmdr.kernels.choose import choose
@@ -90,7 +89,7 @@ def test_the_search_is_compiled_once_for_all_laws(kinds: tuple[str, ...]) -> Non
     compiled = []
     for kind, work in [*((kind, W) for kind in kinds), ("paraboloid", 0.0)]:
         rm.load_separation(rough(kind, 5, seed=1), force=[0.0, 1e-6], effective_modulus=E, work=work)
-        compiled.append(len(machine_leg.follow.signatures))
+        compiled.append(len(follow.signatures))
     assert compiled[0] >= 1
     assert len(set(compiled)) == 1
 

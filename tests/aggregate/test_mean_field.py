@@ -11,9 +11,9 @@ from scipy.integrate import dblquad
 from scipy.optimize import brentq
 
 import roughmdr as rm
+from roughmdr.aggregate.mean_field import coupling_of, mean_inverse_distance, shift
 from roughmdr.ensemble.patch_source import LATTICE_CONSTANTS
 from roughmdr.interaction import Interaction
-from roughmdr.interaction.mean_field import coupling_of, mean_inverse_distance, shift
 
 E = 4e6
 FREE, PERIODIC = (Interaction("mean_field", boundary) for boundary in ("free", "periodic"))

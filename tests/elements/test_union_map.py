@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 from scenes import WIDER_SHAPES
 
-from roughmdr.elements.surface import POINTS, grid_shape
-from roughmdr.elements.union_map import union_map
+from roughmdr.elements.surface import POINTS, grid_shape, union_map
 from roughmdr.ensemble.ensemble import Ensemble
 from roughmdr.interaction.buried import drop
 from roughmdr.numerics.arguments import Floats

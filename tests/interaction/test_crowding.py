@@ -128,7 +128,7 @@ def test_a_machine_asks_for_the_errors_of_its_steps_only(monkeypatch: pytest.Mon
         return crowding(*arguments)
 
     monkeypatch.setattr(solve, "crowding", counted)
-    monkeypatch.setattr("roughmdr.aggregate.neighbours.error_by_distances", None)
+    monkeypatch.setattr("roughmdr.aggregate.neighbours_error.error_by_distances", None)
     asperities = rm.generate({**ASPERITIES, "count": 30, "patch": "0.5 mm", "placement": "random"}, seed=1)
     path = {"remote": ["1 um", "0.5 um", "0 um"], "machine_stiffness": "1000 N/m"}
     for model, most in (("pairwise", 3), ("mean_field", 0)):

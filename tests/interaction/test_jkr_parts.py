@@ -14,10 +14,10 @@ from roughmdr.interaction.green import Periodic
 from roughmdr.interaction.interface import Asperities
 from roughmdr.interaction.jkr import coincident, equilibrium, factors
 from roughmdr.interaction.jkr.bracket import Bracket
-from roughmdr.interaction.jkr.choose import jkr_kernels
 from roughmdr.interaction.jkr.contacts import Contacts
 from roughmdr.interaction.jkr.equilibrium import Drive, Problem, State, Step, evaluate
 from roughmdr.interaction.jkr.factors import Factors
+from roughmdr.interaction.jkr.front import jkr_kernels
 from roughmdr.interaction.jkr.interface import JkrKernels
 from roughmdr.interaction.jkr.lone import Surface
 from roughmdr.interaction.jkr.mixing import Mixing

@@ -18,7 +18,7 @@ from roughmdr.ensemble import Source
 from roughmdr.kernels.adhesion import Adhesion
 from roughmdr.layer import curved
 from roughmdr.layer.curved.bulk import displacement_matrix, row_load
-from roughmdr.layer.curved.pull_off import pull_off_of
+from roughmdr.layer.curved.law import pull_off_of
 from roughmdr.layer.curved.refine import Layer, solve
 from roughmdr.layer.curved.rings import Rings
 from roughmdr.numerics.arguments import Floats

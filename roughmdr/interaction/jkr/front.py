@@ -1,25 +1,29 @@
 """The asperities that adhesive contacts are made of, in units of the patch, and the way of the flat over them."""
 
 import math
+from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from roughmdr.errors import OutOfRange
+from roughmdr.interaction.contacts import coupled_kernels
 from roughmdr.interaction.dense import Dense
 from roughmdr.interaction.green import below_all
 from roughmdr.interaction.interface import Asperities
-from roughmdr.interaction.jkr import coincident
+from roughmdr.interaction.jkr import coincident, contacts, lone
 from roughmdr.interaction.jkr.branch import NoEquilibriumError
-from roughmdr.interaction.jkr.choose import jkr_kernels
 from roughmdr.interaction.jkr.equilibrium import Drive, Problem, State, evaluate
 from roughmdr.interaction.jkr.events import Event, advance
 from roughmdr.interaction.jkr.interface import JkrKernels
 from roughmdr.interaction.jkr.jumps import Avalanche, avalanche
 from roughmdr.interaction.jkr.lone import Surface
 from roughmdr.interaction.placed_asperities import Placed
+from roughmdr.kernels.interface import Kernels
+from roughmdr.kernels.profile.interface import ProfileKernels
 from roughmdr.numerics.arguments import Floats
+from roughmdr.numerics.jit import once, specialise
 
 _GROWTH = 1.3  # number of asperities that are looked at, over the one before, where more may touch
 _FURTHER = 1.0  # way down, over the depth of the flat, after which pairs that may overlap are looked for again
@@ -190,3 +194,27 @@ def _radius(kernels: JkrKernels, asperities: Asperities, i: int, work: float) ->
 def none(problem: Problem) -> Floats:
     """Return an outer field of none."""
     return np.zeros((5, problem.natural.size))
+
+
+@once
+def jkr_kernels(kernels: Kernels) -> JkrKernels:
+    """Return the kernels of a shape without adhesion with those of its adhesive contacts, compiled."""
+    coupled = coupled_kernels(kernels)
+    whole = JkrKernels(f"jkr_{coupled.name}")
+    vars(whole).update(vars(coupled) | {"__name__": whole.__name__})
+    profile = isinstance(kernels, ProfileKernels)
+    whole.pinned, whole.flat = coupled.pinned, coupled.flat
+    parts: dict[str, Callable[..., object]] = {
+        "strain": contacts.strain_of_profile if profile else contacts.strain_of_power,
+        "held": contacts.held,
+        "lift": contacts.lift,
+        "slide": contacts.slide,
+        "fill": contacts.fill,
+        "flanks": coincident.flanks,
+        "edge": lone.edge,
+        "next_state": lone.next_state,
+        "lone_load": lone.lone_load,
+    }
+    for name, part in parts.items():
+        vars(whole)[name] = specialise(part, whole)
+    return whole

@@ -11,10 +11,11 @@ from roughmdr.aggregate.totals import AREA, COUNT, RADIUS
 from roughmdr.asperity.validity import ValidityLimits
 from roughmdr.ensemble.ensemble import Ensemble
 from roughmdr.errors import OutOfRange
+from roughmdr.expected.pull_off import ends_apart
 from roughmdr.layer.curved.follow import Body, Place
 from roughmdr.layer.curved.local_law import LocalLaw
-from roughmdr.layer.curved.pull_off import pull_off_of
 from roughmdr.layer.curved.refine import Layer, Solution, solve
+from roughmdr.loading.pull_off import WITHOUT_TENSION, PullOff, unloadings
 from roughmdr.numerics.arguments import Floats
 from roughmdr.shapes import Shape
 
@@ -22,6 +23,8 @@ _MAX_ERROR = 0.1  # of the largest force: a larger error is refused
 _FEW = 10  # contacts, of whose number the standard deviation is a third
 _OF_LAYER = ("model_error_curve",)
 """Variables that are those of the layer where it is pressed most."""
+_PARTS, _MAX_ROUNDS = 8, 12  # of the steps beside the lowest force, which are divided again and again
+_FINE = 0.1  # of the error of the force: steps whose forces differ by less are close enough
 
 
 def compute(layer: Layer, shape: Shape, path: LoadingPath, *, error: float, variables: Iterable[str]) -> LoadSeparation:
@@ -121,3 +124,35 @@ def _remarks(error: float, asked: float) -> list[str]:
     if error <= asked:
         return []
     return [f"the force of the curved body changes by {error:.2g} of its largest with finer rings; {asked:g} was asked"]
+
+
+def pull_off_of(body: Body, places: list[Place], separation: Floats, error: float) -> PullOff:
+    """Return the pull-off, given the rings at each step of the path; NaN where no unloading ends out of contact.
+
+    The force is right to ``error`` over the largest.
+    """
+    force = body.force(places)
+    rises = unloadings(separation, force)
+    contacts = np.array([body.totals(place)[COUNT] for place in places])
+    if not ends_apart(rises, contacts):
+        return PullOff()
+    if not body.half.law.adhesive:
+        return WITHOUT_TENSION
+    rise = min(rises, key=lambda each: float(each.force.min()))
+    at = rise.last - rise.separation.size + 1 + int(np.argmin(rise.force))
+    if not force[at] < 0.0:
+        return WITHOUT_TENSION
+    lowest, least = places[at], float(force[at])
+    before, after = places[max(at - 1, rise.last - rise.separation.size + 1)], separation[min(at + 1, rise.last)]
+    for _ in range(_MAX_ROUNDS):
+        between = body.along(np.linspace(before.h, after, _PARTS + 1)[1:], before)
+        forces = body.force(between)
+        k = int(np.argmin(forces))
+        if forces[k] < least:
+            lowest, least = between[k], float(forces[k])
+        last = float(forces[k - 1]) if k > 0 else float(body.force([before])[0])
+        before, after = (between[k - 1] if k > 0 else before), between[min(k + 1, _PARTS - 1)].h
+        if abs(last - forces[k]) <= _FINE * error * abs(least):
+            break
+    totals = body.totals(lowest)
+    return PullOff(least, lowest.h, totals[COUNT], totals[AREA])

@@ -11,9 +11,9 @@ from roughmdr.report.export.law import Quantity, Source
 from roughmdr.report.export.table import Table
 from roughmdr.report.export.thin import RELATIVE_FROM
 from roughmdr.report.export.units import UnitSystem
-from roughmdr.report.trust import trust_of_result
 from roughmdr.result.between import CONFIDENCE
 from roughmdr.result.layout import estimator_of, realizations_of
+from roughmdr.result.trust import trust_of_result
 from roughmdr.storage.labelled import Labelled
 from roughmdr.variables import CONDUCTANCES, TIME
 

@@ -6,11 +6,11 @@ from pathlib import Path
 from roughmdr.errors import StoreError
 from roughmdr.expected.few_asperities import FewAsperities, few_asperities
 from roughmdr.pictures.overlay import plan_of_result
-from roughmdr.pictures.select import cell_of, select
 from roughmdr.report.export.document import Column, Document
 from roughmdr.report.export.header import model_lines, origin_lines
 from roughmdr.report.export.units import UnitSystem
 from roughmdr.result.layout import cells_of
+from roughmdr.result.select import cell_of, select
 from roughmdr.scene import Scene
 from roughmdr.shapes import SHAPES
 from roughmdr.storage.labelled import Labelled

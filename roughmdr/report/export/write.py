@@ -9,15 +9,15 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from roughmdr.errors import LimitWarning, StoreError, level_outside
-from roughmdr.pictures.select import cell_of, select
 from roughmdr.report.export.document import Column, Document
 from roughmdr.report.export.formats import FORMATS, Format, most_lines_of
 from roughmdr.report.export.header import origin_lines, table_lines
 from roughmdr.report.export.law import QUANTITIES, Quantity, law_of
 from roughmdr.report.export.table import MOST_ERROR, Table, table_of
 from roughmdr.report.export.units import UnitSystem
-from roughmdr.report.given import given_result
+from roughmdr.result.given import given_result
 from roughmdr.result.layout import swept_sizes, swept_values
+from roughmdr.result.select import cell_of, select
 from roughmdr.schema.keywords import with_options
 from roughmdr.schema.toml_text import parse_toml
 from roughmdr.schema.units import DIMENSIONLESS

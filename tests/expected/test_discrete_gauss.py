@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from roughmdr.numerics.discrete_gauss import gauss_of_points
+from roughmdr.expected.height_rules import gauss_of_points
 
 FINE = np.polynomial.legendre.leggauss(200)
 

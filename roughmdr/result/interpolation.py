@@ -5,8 +5,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike
 
-from roughmdr.analysis.brackets import find_brackets, interpolate
-from roughmdr.analysis.curves import (
+from roughmdr.errors import OutOfRange
+from roughmdr.result.between import CONFIDENCE
+from roughmdr.result.brackets import find_brackets, interpolate
+from roughmdr.result.curves import (
     PER_AREA,
     Legs,
     alone,
@@ -19,8 +21,6 @@ from roughmdr.analysis.curves import (
     separation_of,
     whole,
 )
-from roughmdr.errors import OutOfRange
-from roughmdr.result.between import CONFIDENCE
 from roughmdr.schema.arguments import check_values
 from roughmdr.variables import LAW_VARIABLES, SEPARATION
 

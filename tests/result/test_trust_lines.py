@@ -15,7 +15,7 @@ from scenes import SCENE, scene
 import roughmdr as rm
 from roughmdr.cli import main
 from roughmdr.model_error.coupling import coupling_error, summits_error
-from roughmdr.report.trust import trust_lines
+from roughmdr.result.trust import trust_lines
 
 NUMBERS = {
     "model_error": 0.317, "interaction_error": 1.4 * math.sqrt(0.035) + 0.035, "slope_error": 0.02,

@@ -6,8 +6,8 @@ from collections.abc import Callable
 import numpy as np
 
 from roughmdr.aggregate import totals
+from roughmdr.aggregate.mean_field import mean_inverse_distance
 from roughmdr.ensemble.ensemble import Ensemble
-from roughmdr.interaction.mean_field import mean_inverse_distance
 from roughmdr.interaction.placed import sides_of
 from roughmdr.loading.path import LoadingPath
 from roughmdr.model_error.distances import FEW, error_by_distances, error_of_few

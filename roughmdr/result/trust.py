@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Iterator, Mapping
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -23,6 +23,9 @@ from roughmdr.schema.toml_text import parse_toml
 from roughmdr.schema.units import format_quantity
 from roughmdr.storage.labelled import Labelled
 from roughmdr.variables import LATERAL
+
+if TYPE_CHECKING:
+    pass
 
 _TOLD = 0.01  # parts of the model error below this are not told
 _TINY = 1e-6

@@ -3,9 +3,9 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from roughmdr.analysis.curves import Legs
 from roughmdr.numerics.arguments import Floats, Ints
 from roughmdr.result.between import AT_A_PLACE, REACH, off_line
+from roughmdr.result.curves import Legs
 
 LOWER, UPPER, FRACTION = range(3)
 """Parts of a bracket: its two steps, and how far from the first to the second the value is."""
