@@ -294,7 +294,7 @@ class Analysis:
         ['contact count']
         """
         from roughmdr.pictures.plot import plot
-        from roughmdr.result.curves import check_result
+        from roughmdr.result.curves import result_of
 
-        check_result(self._dataset)
+        result_of(self._dataset)
         return plot(self._dataset, *args, **kwargs)

@@ -6,9 +6,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from roughmdr.analysis.pull_off import pull_off
-from roughmdr.analysis.trust import trust_lines
 from roughmdr.errors import StoreError
-from roughmdr.result.curves import control_of, curves_of, is_ensemble, is_reference, is_result, keeps_statistics
+from roughmdr.result.curves import curves_of, is_ensemble, is_result
+from roughmdr.result.trust import trust_of_result
+from roughmdr.result.view import ResultView
 from roughmdr.schema.units import format_quantity
 from roughmdr.schema.wording import printable
 from roughmdr.variables import AUXILIARY_COORDINATES, BRANCHES, LATERAL, STEP_COORDINATES
@@ -25,35 +26,36 @@ def describe(dataset: "xr.Dataset") -> Iterator[tuple[str, str]]:
     if is_ensemble(dataset):
         yield from _describe_ensemble(dataset)
     elif is_result(dataset):
-        yield from _describe_result(dataset)
+        yield from _describe_result(ResultView(dataset))
     else:
         yield "dataset", "neither a result of roughmdr nor an ensemble of asperities"
 
 
-def _describe_result(dataset: "xr.Dataset") -> Iterator[tuple[str, str]]:
+def _describe_result(result: ResultView) -> Iterator[tuple[str, str]]:
+    dataset = result.dataset
     yield "result", printable(str(dataset.attrs.get("title", "load-separation law")))
-    axes = _axes(dataset)
+    axes = _axes(result)
     for name, text in axes[:_MANY_AXES]:
         yield "sweep", f"{name} {text}"
     if len(axes) > _MANY_AXES:
         yield "", f"and {len(axes) - _MANY_AXES} more swept keys"
-    yield "runs", f"{_runs(dataset)}, {dataset.sizes['step']} steps"
-    control = control_of(dataset)
-    branches = [branch for branch in BRANCHES if (dataset["branch"] == branch).any()]
-    yield "path", f"{control} {_range(dataset[control])}, {' and '.join(branches)}"
-    yield "curves", ", ".join(name.removesuffix("_mean") for name in curves_of(dataset) if not is_reference(name))
-    if control != LATERAL.name:
+    yield "runs", f"{_runs(result)}, {dataset.sizes['step']} steps"
+    branches = [branch for branch in BRANCHES if branch in result.branches]
+    yield "path", f"{result.control} {_range(dataset[result.control])}, {' and '.join(branches)}"
+    yield "curves", ", ".join(result.curves)
+    if result.control != LATERAL.name:
         yield "pull-off", _pull_off(dataset)
     if "model_error" in dataset:
-        yield "trust", next((text for name, text in trust_lines(dataset) if name == "trust"), "not known")
+        yield "trust", next((text for name, text in trust_of_result(result) if name == "trust"), "not known")
     if warnings := str(dataset.attrs.get("warnings", "")).splitlines():
         more = f" (and {len(warnings) - 1} more)" if len(warnings) > 1 else ""
         yield "warning", warnings[0] + more
 
 
-def _axes(dataset: "xr.Dataset") -> list[tuple[str, str]]:
+def _axes(result: ResultView) -> list[tuple[str, str]]:
     """Return the swept keys with their ranges."""
-    swept = {dim for name in curves_of(dataset) for dim in dataset[name].dims} - {"realization", "step"}
+    dataset = result.dataset
+    swept = {dim for name in curves_of(result) for dim in dataset[name].dims} - {"realization", "step"}
     others = (*AUXILIARY_COORDINATES, *STEP_COORDINATES)
     names = [str(name) for name, each in dataset.coords.items() if name not in others and set(each.dims) <= swept]
     return [(name, _range(dataset[name])) for name in names]
@@ -71,12 +73,9 @@ def _range(array: "xr.DataArray") -> str:
     return format_quantity(low, unit, to=high if high != low else None) + number
 
 
-def _runs(dataset: "xr.Dataset") -> str:
-    if "realization" in dataset.dims:
-        count, kept = dataset.sizes["realization"], ""
-    elif keeps_statistics(dataset) and "realization_count" in dataset:
-        count, kept = int(dataset["realization_count"].max()), "statistics of "
-    else:
+def _runs(result: ResultView) -> str:
+    count, kept = result.realizations, "statistics of " if result.keeps_statistics else ""
+    if "realization" not in result.sizes and not kept:
         return "one realisation"
     return f"{kept}{count} realisation{'s' * (count > 1)}"
 

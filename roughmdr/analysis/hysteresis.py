@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roughmdr.numerics.arguments import Floats
-from roughmdr.result.curves import Legs, alone, check_result, control_of, curve, separation_of
+from roughmdr.result.curves import Branch, alone, curve, result_of, separation_of
 from roughmdr.variables import BRANCHES, LATERAL
 
 if TYPE_CHECKING:
@@ -33,11 +33,11 @@ def hysteresis(dataset: "xr.Dataset") -> "xr.Dataset":
     """
     import xarray as xr
 
-    check_result(dataset)
-    lateral = control_of(dataset) == LATERAL.name
-    force = alone(curve(dataset, "tangential_force" if lateral else "force", "hysteresis needs"))
-    separation = -alone(curve(dataset, LATERAL.name, "")) if lateral else alone(separation_of(dataset))
-    loading, unloading = (Legs(dataset, branch).wanted[1:] for branch in BRANCHES)
+    result = result_of(dataset)
+    lateral = result.control == LATERAL.name
+    force = alone(curve(result, "tangential_force" if lateral else "force", "hysteresis needs"))
+    separation = -alone(curve(result, LATERAL.name, "")) if lateral else alone(separation_of(result))
+    loading, unloading = (Branch(result, branch).wanted[1:] for branch in BRANCHES)
     energies = xr.apply_ufunc(
         _energies,
         force,

@@ -14,7 +14,7 @@ from roughmdr.ensemble import NayakAsperities, RandomAsperities
 from roughmdr.ensemble.nodes import Rule
 from roughmdr.errors import StoreError
 from roughmdr.result.cells import of_cells
-from roughmdr.result.curves import check_result, control_of
+from roughmdr.result.curves import result_of
 from roughmdr.scene import Scene
 from roughmdr.schema.wording import short_repr
 
@@ -71,11 +71,11 @@ def normalise(dataset: "xr.Dataset", theory: str) -> "xr.Dataset":
     """Return the curves and pull-offs of a result over the scales of a theory, and the path over sigma."""
     import xarray as xr
 
-    check_result(dataset)
+    result = result_of(dataset)
     if theory != "gw":
         raise StoreError(f"theory is {short_repr(theory)}; it must be 'gw', Greenwood and Williamson")
     numbers = [of_cells(dataset, part, "normalise") for part in (_count, _modulus, _radius, _sigma, _area)]
-    control = control_of(dataset)
+    control = result.control
     names = [*dataset.data_vars, *([control] if control in _SCALES else [])]
     found: dict[str, xr.DataArray] = {}
     for name in map(str, names):

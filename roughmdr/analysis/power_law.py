@@ -8,7 +8,8 @@ from numpy.typing import NDArray
 from roughmdr.batch.moments import mean_and_error
 from roughmdr.errors import StoreError
 from roughmdr.numerics.arguments import Floats
-from roughmdr.result.curves import Legs, alone, check_result, control_of, curve
+from roughmdr.result.curves import Branch, alone, curve, result_of
+from roughmdr.result.view import ResultView
 from roughmdr.schema.arguments import check_values
 from roughmdr.schema.wording import short_repr
 
@@ -42,11 +43,11 @@ def fit_power_law(dataset: "xr.Dataset", y: str, x: str, branch: str, between: B
     """Return the power law y(x) on a branch, for each cell of a sweep."""
     import xarray as xr
 
-    check_result(dataset)
-    along, over = (alone(curve(dataset, name, asked)) for name, asked in ((y, "y is"), (x, "x is")))
+    result = result_of(dataset)
+    along, over = (alone(curve(result, name, asked)) for name, asked in ((y, "y is"), (x, "x is")))
     both = {"y": along.attrs.get("units", "1"), "x": over.attrs.get("units", "1")}
     low, high = (0.0, np.inf) if between is None else _ends(between, both["x"])
-    kwargs = {"chosen": _chosen(dataset, branch), "low": low, "high": high}
+    kwargs = {"chosen": _chosen(result, branch), "low": low, "high": high}
     sums = xr.apply_ufunc(
         _sums,
         over,
@@ -94,11 +95,10 @@ def _ends(between: Between, units: str) -> tuple[float, float]:
     return float(ends[0]), float(ends[1])
 
 
-def _chosen(dataset: "xr.Dataset", branch: str) -> NDArray[np.int64]:
+def _chosen(result: ResultView, branch: str) -> NDArray[np.int64]:
     """Return the steps on a branch, without those that hold the one before."""
-    wanted = Legs(dataset, branch).wanted
-    control = dataset[control_of(dataset)]
-    values = control.to_numpy().reshape(-1, wanted.size)
+    wanted = Branch(result, branch).wanted
+    values = result.path.reshape(-1, wanted.size)
     held = np.append(False, (np.diff(values) == 0.0).all(axis=0) & wanted[:-1])
     return np.flatnonzero(wanted & ~held)
 

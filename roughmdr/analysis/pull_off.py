@@ -7,7 +7,7 @@ import numpy as np
 from roughmdr.batch.moments import mean_and_error
 from roughmdr.errors import StoreError
 from roughmdr.numerics.arguments import Floats
-from roughmdr.result.curves import check_result
+from roughmdr.result.curves import result_of
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -30,14 +30,14 @@ def pull_off(dataset: "xr.Dataset") -> "xr.Dataset":
     """Return the pull-off over the swept keys; StoreError where the path has no unloading."""
     import xarray as xr
 
-    check_result(dataset)
-    if not (dataset["branch"] == "unloading").any():
+    result = result_of(dataset)
+    if not (result.branches == "unloading").any():
         raise StoreError("this result has no pull-off: its path has no unloading")
-    if "pull_off_force" not in dataset and "pull_off_force_mean" not in dataset:
+    if not result.holds("pull_off_force"):
         raise StoreError("this result has no pull-off: it was made by a version that did not store any")
     found: dict[str, xr.DataArray] = {}
     for name, stored in _MEANS.items():
-        if stored in dataset or f"{stored}_mean" in dataset:
+        if result.holds(stored):
             mean, error = _mean_and_error(dataset, stored)
             found[name] = mean
             if name == "force":

@@ -12,16 +12,25 @@ from roughmdr.errors import StoreError
 from roughmdr.loading.path import LoadingPath
 from roughmdr.numerics.arguments import Floats
 from roughmdr.result.cells import of_cells
-from roughmdr.result.curves import check_result, control_of, curves_of, keeps_statistics
+from roughmdr.result.curves import curves_of, result_of
+from roughmdr.result.view import ResultView
 from roughmdr.scene import Scene
 from roughmdr.schema.toml_text import parse_toml
-from roughmdr.variables import DONE, PULL_OFF, REMOTE, RUN_DIAGNOSTICS, RUN_VARIABLES, SEPARATION, TRAVEL
+from roughmdr.variables import (
+    DONE,
+    INFINITE_VARIANCE,
+    PULL_OFF,
+    REMOTE,
+    RUN_DIAGNOSTICS,
+    RUN_VARIABLES,
+    SEPARATION,
+    STATISTICS,
+    TRAVEL,
+)
 
 if TYPE_CHECKING:
     import xarray as xr
 
-_NAMES = {"mean": "mean", "sem": "standard error of the mean", "min": "least", "max": "greatest"}
-_INFINITE_VARIANCE = "not computed where contacts detach: there k goes to minus infinity and has no finite variance"
 _OVER_CELLS = ("pull_off_count", "pull_off_force_of_mean", "pull_off_pressure_of_mean", "nominal_area")
 _ERROR = "_interpolation_error"
 _OF_CURVES = ("cell_key", "remark")
@@ -38,14 +47,14 @@ def statistics(dataset: "xr.Dataset") -> "xr.Dataset":
 
     if _is_found(dataset):
         return _of_found(dataset)
-    check_result(dataset)
-    if keeps_statistics(dataset):
+    result = result_of(dataset)
+    if result.keeps_statistics:
         raise StoreError("statistics needs the curves of realisations; this result has their statistics already")
     if "status" not in dataset or "realization" not in dataset["status"].dims:
         raise StoreError("statistics needs the dimension realization, and status; this result has none")
     done = (dataset["status"] == DONE).compute()
     found: dict[str, xr.DataArray] = {}
-    for name in curves_of(dataset):
+    for name in curves_of(result):
         found |= _statistics(dataset, name, done)
     for name in PULL_OFF:
         if name in dataset and "realization" in dataset[name].dims:
@@ -67,8 +76,8 @@ def statistics(dataset: "xr.Dataset") -> "xr.Dataset":
     kept = [name for name in dataset.coords if name not in _OF_CURVES and "realization" not in dataset[name].dims]
     bare = {name: array.reset_coords(drop=True) for name, array in found.items()}
     coordinates = {name: dataset[name].variable for name in kept}
-    result = xr.Dataset(bare, coords=coordinates, attrs=attrs)
-    return result.set_coords("remark") if "remark" in bare else result
+    reduced = xr.Dataset(bare, coords=coordinates, attrs=attrs)
+    return reduced.set_coords("remark") if "remark" in bare else reduced
 
 
 def _is_found(dataset: "xr.Dataset") -> bool:
@@ -104,21 +113,21 @@ def _statistics(dataset: "xr.Dataset", name: str, counted: "xr.DataArray") -> "d
         array,
         counted,
         input_core_dims=[["realization"], ["realization"]],
-        output_core_dims=[[]] * len(_NAMES),
+        output_core_dims=[[]] * len(STATISTICS),
         keep_attrs=False,
         dask="parallelized",
-        output_dtypes=[np.float64] * len(_NAMES),
+        output_dtypes=[np.float64] * len(STATISTICS),
     )
-    parts = dict(zip(_NAMES, found, strict=True))
+    parts = dict(zip(STATISTICS, found, strict=True))
     attrs = {
         statistic: {**array.attrs, "long_name": f"{said} of {_article(name)}{array.attrs['long_name']}"}
-        for statistic, said in _NAMES.items()
+        for statistic, said in STATISTICS.items()
     }
     if name not in PULL_OFF:
         attrs["mean"]["ancillary_variables"] = f"{name}_sem"
     if name == "stiffness" and "step" in dataset.dims and (known := _has_variance(dataset)) is not None:
         parts["sem"] = parts["sem"].where(known)
-        attrs["sem"]["comment"] = _INFINITE_VARIANCE
+        attrs["sem"]["comment"] = INFINITE_VARIANCE
     return {f"{name}_{statistic}": part.assign_attrs(attrs[statistic]) for statistic, part in parts.items()}
 
 
@@ -132,7 +141,7 @@ def _moments(values: Floats, counted: NDArray[np.bool_]) -> tuple[Floats, ...]:
     cells = np.broadcast_to(counted, values.shape)
     if cells.all():
         return _four(np.moveaxis(values, -1, 0))
-    found = tuple(np.full(shape, math.nan) for _ in _NAMES)
+    found = tuple(np.full(shape, math.nan) for _ in STATISTICS)
     for cell in np.ndindex(shape):
         if cells[cell].any():
             for part, value in zip(found, _four(values[cell][cells[cell]]), strict=True):
@@ -152,7 +161,7 @@ def _has_variance(dataset: "xr.Dataset") -> "xr.DataArray | None":
     """
     import xarray as xr
 
-    control = control_of(dataset)
+    control = ResultView(dataset).control
     if control not in (SEPARATION.name, TRAVEL.name) or REMOTE.name in dataset:
         return None
     sign = 1.0 if control == SEPARATION.name else -1.0

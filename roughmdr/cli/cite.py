@@ -4,7 +4,7 @@ from pathlib import Path
 
 import click
 
-from roughmdr.cli.invocation import warn_of
+from roughmdr.cli.invocation import read_warned, warn_of
 from roughmdr.cli.options import FILE
 from roughmdr.cli.terminal import Command, print_text
 
@@ -24,7 +24,7 @@ def cite(result: Path, bibtex: bool) -> None:
 
         print_text(describe_papers(read(result).toml, None, bibtex=bibtex))
         return
-    from roughmdr.storage.result_file import is_fit, read_result
+    from roughmdr.storage.result_file import is_fit
 
     if is_fit(result):
         from roughmdr.fitting.stored import read_fit
@@ -33,6 +33,5 @@ def cite(result: Path, bibtex: bool) -> None:
         warn_of(result, fit.integrity_fault())
         print_text(describe_papers(fit.attrs["scene"], None, bibtex=bibtex))
         return
-    data = read_result(result)
-    warn_of(result, data.integrity_fault())
+    data = read_warned(result)
     print_text(describe_papers(data.attrs["scene"], data, bibtex=bibtex))

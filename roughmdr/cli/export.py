@@ -4,7 +4,7 @@ from pathlib import Path
 
 import click
 
-from roughmdr.cli.invocation import warn_of
+from roughmdr.cli.invocation import read_warned
 from roughmdr.cli.options import FILE, OUTPUT, fresh_option, pairs
 from roughmdr.cli.terminal import Command, print_note, print_text
 
@@ -39,12 +39,10 @@ def export(result: Path, output: Path, selected: tuple[str, ...], fresh: bool, *
     the expected law. An exported file that is there already is replaced, since RESULT gives it again.
     """
     from roughmdr.report.export.write import Export, check_export, document_of, write
-    from roughmdr.storage.result_file import read_result
 
     asked = Export(select=pairs("--select", selected), **options)  # type: ignore[arg-type]  # names and types of click
     check_export(output, result, asked, fresh=fresh)
-    data = read_result(result)
-    warn_of(result, data.integrity_fault())
+    data = read_warned(result)
     document, told = document_of(data, result, asked)
     for warning in told:
         print_note(warning)

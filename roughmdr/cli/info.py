@@ -5,7 +5,7 @@ from pathlib import Path
 
 import click
 
-from roughmdr.cli.invocation import warn_of
+from roughmdr.cli.invocation import read_warned, warn_of
 from roughmdr.cli.options import FILE, json_option
 from roughmdr.cli.terminal import Command, print_document, print_text
 from roughmdr.errors import StoreError
@@ -32,7 +32,7 @@ def info(ctx: click.Context, result: Path, cells: bool, as_json: bool) -> None:
     if awaited:
         raise StoreError(f"{result}: is not written yet; what is finished is told by: roughmdr info {parts}")
     from roughmdr.report.info import describe
-    from roughmdr.storage.result_file import is_fit, read_result
+    from roughmdr.storage.result_file import is_fit
 
     if not as_json and is_fit(result):
         from roughmdr.fitting.stored import read_fit
@@ -43,8 +43,7 @@ def info(ctx: click.Context, result: Path, cells: bool, as_json: bool) -> None:
         print_text(describe_fit(fit))
         return
 
-    data = read_result(result)
-    warn_of(result, data.integrity_fault())
+    data = read_warned(result)
     if as_json:
         from roughmdr.report.result_document import result_table
 

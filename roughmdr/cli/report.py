@@ -4,7 +4,7 @@ from pathlib import Path
 
 import click
 
-from roughmdr.cli.invocation import warn_of
+from roughmdr.cli.invocation import read_warned
 from roughmdr.cli.options import FILE, OUTPUT, fresh_option
 from roughmdr.cli.terminal import Command, print_text
 
@@ -21,11 +21,9 @@ def report(result: Path, output: Path, fresh: bool) -> None:
     """
     from roughmdr.report.page import check_page, page_of
     from roughmdr.storage.files import replace_atomically
-    from roughmdr.storage.result_file import read_result
 
     check_page(output, result, fresh=fresh)
-    data = read_result(result)
-    warn_of(result, data.integrity_fault())
+    data = read_warned(result)
     with replace_atomically(output) as temporary:
         temporary.write_text(page_of(data, result), encoding="utf-8")
     print_text(f"report       {click.format_filename(output)}")

@@ -61,11 +61,13 @@ def run(
 
         validated = read(scene, changes)  # before anything heavy is imported
         from roughmdr.batch.plan import make_plan
+        from roughmdr.result.view import ResultView
         from roughmdr.runner.run import execute
 
         planned = make_plan(validated)
     silent = quiet or as_json
-    result = execute(planned, output, _backend(**others), resume=resume, quiet=silent, command=command_line())
+    done = execute(planned, output, _backend(**others), resume=resume, quiet=silent, command=command_line())
+    result = ResultView(done)
     elapsed, failed = time.perf_counter() - started, describe_failed(result)
     if as_json:
         from roughmdr.report.documents import fault

@@ -15,8 +15,8 @@ from roughmdr.numerics.arguments import Floats
 from roughmdr.pictures.one_contact import OneContact
 from roughmdr.pictures.snapshot import Snapshot
 from roughmdr.pictures.style import BRANCH_COLOURS, Scale, in_words, set_title
+from roughmdr.result.view import ResultView
 from roughmdr.shapes import SHAPES, Shape
-from roughmdr.storage.labelled import Labelled
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -32,7 +32,7 @@ _STRAIGHT = 2  # at each end
 
 
 def draw_asperity(
-    result: Labelled,
+    result: ResultView,
     file: Path | None = None,
     *,
     cell: tuple[int, ...] | None = None,

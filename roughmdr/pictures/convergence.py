@@ -10,9 +10,7 @@ from roughmdr.errors import StoreError
 from roughmdr.numerics.arguments import Floats, Ints
 from roughmdr.pictures.curves import quantiles
 from roughmdr.pictures.style import BRANCH_COLOURS, colours, set_title
-from roughmdr.result.layout import cell_label, cells_of, control_of, done_of, method_of
-from roughmdr.schema.toml_text import parse_toml
-from roughmdr.storage.labelled import Labelled
+from roughmdr.result.view import ResultView
 from roughmdr.variables import TRAVEL
 
 if TYPE_CHECKING:
@@ -54,7 +52,7 @@ def _scatter(values: Floats, span: float) -> float:
     return float(np.std(values, ddof=1)) / magnitude if magnitude else math.nan
 
 
-def draw_convergence(result: Labelled) -> "Figure":
+def draw_convergence(result: ResultView) -> "Figure":
     """Draw the relative standard error of the mean of the largest force, and of the pull-off force, against the number
     of realisations.
 
@@ -98,16 +96,16 @@ def draw_convergence(result: Labelled) -> "Figure":
     return figure
 
 
-def _quantities(result: Labelled) -> Iterator[Convergence]:
+def _quantities(result: ResultView) -> Iterator[Convergence]:
     """Yield the quantities of each cell of which at least two realisations were computed, unless all are alike."""
-    prescribed = control_of(result) in ("force", "pressure", TRAVEL.name)
+    prescribed = result.control in ("force", "pressure", TRAVEL.name)
     curve, label = (
         ("separation", "separation at the largest load, over its range") if prescribed else ("force", "largest force")
     )
-    done = done_of(result)
+    done = result.done
     for name, title in ((curve, label), ("pull_off_force", "pull-off force")):
-        for number, cell in enumerate(cells_of(result)):
-            if name not in result.variables or method_of(result, cell) == "expected":
+        for number, cell in enumerate(result.cells):
+            if name not in result.variables or result.method(cell) == "expected":
                 continue
             values, span = result.variables[name].values[cell][done[cell]], 0.0
             if name == curve:
@@ -122,17 +120,17 @@ def _quantities(result: Labelled) -> Iterator[Convergence]:
                 yield Convergence(title, number, values, span)
 
 
-def _draw_panel(ax: "Axes", result: Labelled, found: list[Convergence]) -> float:
+def _draw_panel(ax: "Axes", result: ResultView, found: list[Convergence]) -> float:
     """Draw one quantity of all cells, and the line 1/sqrt(n); return the least error above 0."""
     from matplotlib.ticker import LogLocator, NullFormatter, StrMethodFormatter
 
-    curves, cells = [each.running() for each in found], cells_of(result)
+    curves, cells = [each.running() for each in found], result.cells
     largest = max(int(counts[-1]) for counts, _ in curves)
     first = BRANCH_COLOURS["loading"]
     if len(found) <= _MAX_LINES:
         palette = [first] if len(cells) == 1 else colours(len(cells))
         for each, (counts, errors) in zip(found, curves, strict=True):
-            label = cell_label(result, cells[each.cell]).replace("$", r"\$") or "realisations in their order"
+            label = result.label(cells[each.cell]).replace("$", r"\$") or "realisations in their order"
             marker = "o" if counts.size < _FEW else ""
             ax.plot(counts, errors, color=palette[each.cell], lw=1.8, marker=marker, ms=3, label=label)
     else:
@@ -152,18 +150,16 @@ def _draw_panel(ax: "Axes", result: Labelled, found: list[Convergence]) -> float
     return min(float(errors[errors > 0.0].min(initial=math.inf)) for _, errors in curves)
 
 
-def _levels(result: Labelled) -> Iterator[tuple[float, dict[str, Any], str]]:
+def _levels(result: ResultView) -> Iterator[tuple[float, dict[str, Any], str]]:
     """Yield the other errors of the force that are known and above 0, largest of all cells, with how they are drawn."""
     kinds: tuple[tuple[str, dict[str, Any], str], ...] = (
         ("numerical_error", {"color": "#56b4e9", "ls": "-."}, "numerical error of the force"),
         ("model_error", {"color": "#cc79a7", "ls": "-"}, "error of the force by the model, at most"),
     )
     for name, style, label in kinds:
-        values = result.variables[name].values if name in result.variables else np.empty(0)
-        values = values[np.isfinite(values)]
-        if values.max(initial=0.0) > 0.0:
-            yield float(values.max()), style, label
-    asked = parse_toml(result.attrs["scene"]).get("accuracy", {}).get("relative")
+        if (largest := result.largest(name)) > 0.0:
+            yield largest, style, label
+    asked = result.scene.get("accuracy", {}).get("relative")
     if asked is not None:
         yield float(asked), {"color": "#009e73", "ls": (0, (1.0, 1.0))}, "accuracy.relative, as asked"
 

@@ -7,23 +7,10 @@ from typing import NamedTuple
 import numpy as np
 
 from roughmdr.errors import StoreError
-from roughmdr.numerics.arguments import Floats, Ints
-from roughmdr.result.layout import (
-    OVER_AREA,
-    abscissa_of,
-    control_of,
-    controlled_values,
-    coordinate_values,
-    done_of,
-    stored_variables,
-    swept_sizes,
-)
-from roughmdr.result.means import holds, mean_of
-from roughmdr.schema.quantities import adheres
-from roughmdr.schema.toml_text import parse_toml
+from roughmdr.numerics.arguments import Floats
+from roughmdr.result.view import Leg, ResultView
 from roughmdr.schema.wording import suggestion
-from roughmdr.storage.labelled import Labelled
-from roughmdr.variables import CURVE_VARIABLES, LAW_VARIABLES, TIME
+from roughmdr.variables import CURVE_VARIABLES, LAW_VARIABLES, OVER_AREA, TIME
 
 _PER_AREA = {
     **{total: (OVER_AREA[total], CURVE_VARIABLES[OVER_AREA[total]].units) for total in ("force", "contact_area")},
@@ -54,7 +41,7 @@ class Quantity(NamedTuple):
     area: Floats | None
 
     @classmethod
-    def of(cls, result: Labelled, variable: str, *, per_area: bool = False) -> "Quantity":
+    def of(cls, result: ResultView, variable: str, *, per_area: bool = False) -> "Quantity":
         """Return a variable of a result, per nominal area where that is asked for and it is a sum over asperities."""
         name, unit = _LONG_NAMES.get(variable, variable.replace("_", " ")), LAW_VARIABLES[variable].units
         if not per_area or variable not in _PER_AREA:
@@ -89,22 +76,20 @@ class Curve(NamedTuple):
     runs_x: Floats
 
 
-def drawn_against(result: Labelled, asked: str | None) -> str:
+def drawn_against(result: ResultView, asked: str | None) -> str:
     """Return the variable that curves are drawn against; StoreError for one that the result lacks."""
     if asked is None:
-        return abscissa_of(result)
+        return result.abscissa
     timed = [TIME.name] if TIME.name in result.coordinates else []
-    available = [*dict.fromkeys([control_of(result), *timed, *stored_variables(result)])]
+    available = [*dict.fromkeys([result.control, *timed, *result.curves])]
     if asked not in available:
         raise StoreError(f"x is {asked!r}, which is not in the result{suggestion(asked, available)}")
     return asked
 
 
-def curves_of(result: Labelled, quantity: Quantity, x: Quantity) -> Iterator[Curve]:
+def curves_of(result: ResultView, quantity: Quantity, x: Quantity) -> Iterator[Curve]:
     """Yield the curves of a quantity over another, cell by cell."""
-    branches = result.coordinates["branch"].values
-    legs = _legs(result)
-    done, name = done_of(result), quantity.variable
+    done, name = result.done, quantity.variable
     runs = _runs(result, name)
     mean, error = _mean(result, name)
     xs = _runs(result, x.variable)
@@ -112,12 +97,12 @@ def curves_of(result: Labelled, quantity: Quantity, x: Quantity) -> Iterator[Cur
     model_error = _model_error(result, name, mean)
     mean, error, model_error, runs = map(quantity.scaled, (mean, error, model_error, runs))
     x_mean, xs = x.scaled(x_mean), x.scaled(xs)
-    sticky = adheres(parse_toml(result.attrs["scene"]))
+    sticky = result.adheres
     for number, cell in enumerate(np.ndindex(mean.shape[:-1])):
         some_missing = runs.size and not done[cell].all()
         of_cell, x_of_cell = (values[cell][done[cell]] if some_missing else values[cell] for values in (runs, xs))
-        for leg, steps in enumerate(legs):
-            branch, some = str(branches[steps[-1]]), of_cell[:, steps]
+        for leg, (branch, steps) in enumerate(_legs(result)):
+            some = of_cell[:, steps]
             middle, off = mean[cell][steps], 2.0 * error[cell][steps]
             low, high = middle - off, middle + off
             if name == "stiffness" and sticky and branch == "unloading":  # its variance is infinite
@@ -129,18 +114,19 @@ def curves_of(result: Labelled, quantity: Quantity, x: Quantity) -> Iterator[Cur
             )  # fmt: skip
 
 
-def _legs(result: Labelled) -> list[Ints]:
+def _legs(result: ResultView) -> list[Leg]:
     """Return the steps of each loading and unloading, from the turning point on, which a path need not repeat.
 
     Where it does, some time may have passed.
     """
-    branches, control = result.coordinates["branch"].values, controlled_values(result)
+    control = result.path
     if TIME.name in result.coordinates:
-        control = np.stack([control, coordinate_values(result, TIME.name)])
-    legs = np.split(np.arange(branches.size), np.flatnonzero(branches[1:] != branches[:-1]) + 1)
+        control = np.stack([control, result.over_steps(TIME.name)])
     return [
-        leg if leg[0] == 0 or (control[..., leg[0]] == control[..., leg[0] - 1]).all() else np.append(leg[0] - 1, leg)
-        for leg in legs
+        leg
+        if (first := leg.steps[0]) == 0 or (control[..., first] == control[..., first - 1]).all()
+        else leg._replace(steps=np.append(first - 1, leg.steps))
+        for leg in result.legs
     ]
 
 
@@ -163,40 +149,40 @@ def quantiles(values: Floats, shares: list[float], axis: int | tuple[int, ...]) 
         return np.asarray(np.nanquantile(values, shares, axis=axis))
 
 
-def _runs(result: Labelled, name: str) -> Floats:
+def _runs(result: ResultView, name: str) -> Floats:
     """Return a variable of all realisations, [..., realization, step]; none where their statistics were kept."""
-    cells, steps = tuple(swept_sizes(result).values()), result.sizes["step"]
+    cells, steps = tuple(result.sweep.values()), result.sizes["step"]
     if "realization" not in result.sizes:
         return np.empty((*cells, 0, steps))
     if name in result.variables:
         return result.variables[name].values
-    return np.broadcast_to(coordinate_values(result, name)[..., None, :], (*cells, result.sizes["realization"], steps))
+    return np.broadcast_to(result.over_steps(name)[..., None, :], (*cells, result.sizes["realization"], steps))
 
 
-def _mean(result: Labelled, name: str) -> tuple[Floats, Floats]:
+def _mean(result: ResultView, name: str) -> tuple[Floats, Floats]:
     """Return the mean of a variable and its standard error; a coordinate has none."""
     if name not in result.variables and f"{name}_mean" not in result.variables:
-        values = coordinate_values(result, name)
+        values = result.over_steps(name)
         return values, np.full_like(values, np.nan)
-    return mean_of(result, name)
+    return result.mean(name)
 
 
-def _model_error(result: Labelled, name: str, mean: Floats) -> Floats:
+def _model_error(result: ResultView, name: str, mean: Floats) -> Floats:
     """Return the model error of a mean force; NaN where it is not known, or of other variables.
 
     Its parts by JKR are over the largest force of the path.
     """
     curve = "model_error_curve"
-    if name not in ("force", "pressure") or not holds(result, curve):
+    if name not in ("force", "pressure") or not result.holds(curve):
         return np.full_like(mean, np.nan)
-    error, size = mean_of(result, curve)[0], np.abs(mean)
-    hills = adheres(parse_toml(result.attrs["scene"])) and np.isnan(_largest(result, "overlap_fraction"))
+    error, size = result.mean(curve)[0], np.abs(mean)
+    hills = result.adheres and np.isnan(_largest(result, "overlap_fraction"))
     by_jkr = np.where(hills, np.inf, _largest(result, "adhesion_range_error"))[..., None]
     over_largest = np.minimum(error, by_jkr)
     return np.asarray(size * (error - over_largest) + np.fmax.reduce(size, axis=-1, keepdims=True) * over_largest)
 
 
-def _largest(result: Labelled, name: str) -> Floats:
+def _largest(result: ResultView, name: str) -> Floats:
     """Return the largest of a diagnostic over the realisations of each cell; NaN where none is known."""
     array = result.variables[name]
     return np.asarray(np.fmax.reduce(array.values, axis=-1) if "realization" in array.dims else array.values)

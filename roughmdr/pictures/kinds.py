@@ -6,10 +6,9 @@ from typing import NamedTuple
 from roughmdr.errors import StoreError
 from roughmdr.pictures.panel import MAX_NAMED
 from roughmdr.pictures.request import Content, Drawable, Picture, Request
-from roughmdr.result.layout import asked_variables, cells_of, swept_sizes
 from roughmdr.result.select import along_longest, cell_of, pull_off_step, select
+from roughmdr.result.view import ResultView
 from roughmdr.schema.wording import suggestion
-from roughmdr.storage.labelled import Labelled
 from roughmdr.variables import LAW_VARIABLES
 
 _PULL_OFF = "pull-off"
@@ -48,14 +47,14 @@ def _usual(source: Drawable, request: Request) -> str:
         return "map" if source.content == "ensemble" else "fit"
     curves = set(LAW_VARIABLES)
     if request.at or any(name not in curves for name in request.variables):
-        return "sweep" if len(cells_of(source.data)) > 1 else "law"
+        return "sweep" if len(source.result.cells) > 1 else "law"
     if request.x is not None:
-        return "law" if request.x in curves or not swept_sizes(source.data) else "sweep"
-    return "sweep" if len(cells_of(source.data)) > MAX_NAMED else "law"
+        return "law" if request.x in curves or not source.result.sweep else "sweep"
+    return "sweep" if len(source.result.cells) > MAX_NAMED else "law"
 
 
-def _selected(source: Drawable, request: Request) -> tuple[Labelled, str]:
-    return select(source.data, request.select) if request.select else (source.data, "")
+def _selected(source: Drawable, request: Request) -> tuple[ResultView, str]:
+    return select(source.result, request.select) if request.select else (source.result, "")
 
 
 def _law(source: Drawable, request: Request) -> Picture:
@@ -63,10 +62,10 @@ def _law(source: Drawable, request: Request) -> Picture:
     from roughmdr.pictures.lines import overlay_reference
 
     result, note = _selected(source, request)
-    if len(cells_of(result)) > MAX_NAMED and len(swept_sizes(result)) > 1:
+    if len(result.cells) > MAX_NAMED and len(result.sweep) > 1:
         result, others = along_longest(result)
         note = f"{note}, {others}" if note else f"{others}; select chooses other cells"
-    names = asked_variables(result, request.variables)
+    names = result.asked(request.variables)
     overlays = [("reference", overlay_reference(result, names))] if request.with_reference else []
     if request.with_expected or request.with_theory:
         from roughmdr.pictures.overlay import overlay_expected, overlay_theory, plan_of_result
@@ -103,21 +102,21 @@ def _map(source: Drawable, request: Request) -> Picture:
             raise StoreError(f"{unfit[0]} does not go with asperities, which have no path")
         ensemble = Ensemble.from_dataset(source.data.to_xarray())
         return Picture(draw_ensemble(ensemble, str(source.data.attrs.get("title", "asperities"))), [])
-    cell, realization, step = _place(source.data, request)
-    return Picture(draw_map(source.data, source.file, cell=cell, realization=realization, step=step), [])
+    cell, realization, step = _place(source.result, request)
+    return Picture(draw_map(source.result, source.file, cell=cell, realization=realization, step=step), [])
 
 
 def _asperity(source: Drawable, request: Request) -> Picture:
     from roughmdr.pictures.asperity import draw_asperity
 
-    cell, realization, step = _place(source.data, request)
+    cell, realization, step = _place(source.result, request)
     figure = draw_asperity(
-        source.data, source.file, cell=cell, realization=realization, step=step, asperity=request.asperity
+        source.result, source.file, cell=cell, realization=realization, step=step, asperity=request.asperity
     )
     return Picture(figure, [])
 
 
-def _place(result: Labelled, request: Request) -> tuple[tuple[int, ...], int, int | None]:
+def _place(result: ResultView, request: Request) -> tuple[tuple[int, ...], int, int | None]:
     """Return the cell, the realisation and the step that are asked for; None for the closest approach."""
     cell, realization = cell_of(result, request.select), request.realization or 0
     step = request.step

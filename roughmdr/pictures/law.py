@@ -11,13 +11,10 @@ from roughmdr.pictures.curves import Curve, Quantity, curves_of, drawn_against
 from roughmdr.pictures.lines import EXPECTED, REFERENCE, OverlayLine
 from roughmdr.pictures.panel import MAX_NAMED, MAX_RUNS, Mark, Panel, draw_panel
 from roughmdr.pictures.style import BRANCH_COLOURS, BRANCH_LINESTYLES, THEORY_COLOURS, Scale, colours, set_title
-from roughmdr.result.layout import cell_label, cells_of, done_of, realizations_in_words, realizations_of, swept_sizes
-from roughmdr.result.means import holds, mean_of
 from roughmdr.result.trust import trust_of_result
-from roughmdr.schema.quantities import adheres
-from roughmdr.schema.toml_text import parse_toml
+from roughmdr.result.view import ResultView
 from roughmdr.schema.wording import escape_controls
-from roughmdr.storage.labelled import Array, Labelled
+from roughmdr.storage.labelled import Array
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -37,7 +34,7 @@ class LawOptions(NamedTuple):
 
 
 def draw_law(
-    result: Labelled, names: list[str], lines: Sequence[OverlayLine] = (), options: LawOptions = LawOptions()
+    result: ResultView, names: list[str], lines: Sequence[OverlayLine] = (), options: LawOptions = LawOptions()
 ) -> "Figure":
     """Draw variables of a result against the separation, or whatever else its path controls, or another variable.
 
@@ -51,11 +48,11 @@ def draw_law(
     """
     from matplotlib.figure import Figure
 
-    if not done_of(result).any():
+    if not result.done.any():
         raise StoreError("there is nothing to draw: no run was computed")
     against = drawn_against(result, options.x)
     names = [name for name in names if name != against] or names
-    cells = cells_of(result)
+    cells = result.cells
     columns = min(2, len(names))
     rows = -(-len(names) // columns)
     figure = Figure(figsize=(5.4 * columns, 3.7 * rows + 1.3), layout="constrained")
@@ -84,10 +81,22 @@ def draw_law(
     for ax in axes.flat[len(names) :]:
         ax.set_visible(False)
     _add_legend(figure, result, _entries(result, names, marked=marked, shaded=shaded), overlays, palette)
-    told = realizations_in_words(result) + (", unloading dashed" if len(cells) > 1 else "")
+    told = _realizations(result) + (", unloading dashed" if len(cells) > 1 else "")
     notes = [options.note, told, f"model: {dict(trust_of_result(result))['trust']}"]
     set_title(figure, result.attrs["title"], [note for note in notes if note])
     return figure
+
+
+def _realizations(result: ResultView) -> str:
+    """Describe how many realisations a picture is of, and what it shows of them."""
+    if result.estimator == "expected":
+        return "expected law"
+    most = fewest = result.realizations
+    if "realization_count" in result.variables:
+        fewest = int(result.variables["realization_count"].values.min())
+    if most == 1:
+        return "one realisation"
+    return f"{most if most == fewest else f'{fewest} to {most}'} realisations, mean ± 2 standard errors"
 
 
 def _style(curve: Curve, palette: Sequence[str], cells: int) -> dict[str, Any]:
@@ -117,22 +126,22 @@ def _overlay_style(label: str, overlays: list[str], colour: str | None) -> dict[
     return {"color": shown, "ls": (0, (1.0, 1.0 + 0.5 * number)), "lw": 2.0, **around}
 
 
-def _entries(result: Labelled, names: Sequence[str], *, marked: bool, shaded: bool) -> list[Any]:
+def _entries(result: ResultView, names: Sequence[str], *, marked: bool, shaded: bool) -> list[Any]:
     """Return the entries of the legend of a single cell: its branches, bands and marks."""
     from matplotlib.lines import Line2D
     from matplotlib.patches import Patch
 
-    branches, blue = dict.fromkeys(map(str, result.coordinates["branch"].values)), BRANCH_COLOURS["loading"]
+    branches, blue = dict.fromkeys(map(str, result.branches)), BRANCH_COLOURS["loading"]
     entries: list[Any] = [
         Line2D([], [], color=BRANCH_COLOURS[each], ls=BRANCH_LINESTYLES[each], lw=2.2, label=each) for each in branches
     ]
-    if realizations_of(result) > 1:
+    if result.realizations > 1:
         entries.append(Patch(color=blue, alpha=0.3, lw=0, label="± 2 standard errors"))
     if result.sizes.get("realization", 0) > MAX_RUNS:
         entries.append(Patch(color=blue, alpha=0.12, lw=0, label="9 of 10 realisations"))
-    if "stiffness" in names and "unloading" in branches and adheres(parse_toml(result.attrs["scene"])):
+    if "stiffness" in names and "unloading" in branches and result.adheres:
         entries.append(Patch(color=BRANCH_COLOURS["unloading"], alpha=0.3, lw=0, label="stiffness: median, 2 of 3"))
-    if holds(result, "model_error_curve") and not {"force", "pressure"}.isdisjoint(names):
+    if result.holds("model_error_curve") and not {"force", "pressure"}.isdisjoint(names):
         entries.append(Patch(color="0.5", alpha=0.4, lw=0, label="error of the model"))
     if shaded:
         entries.append(Patch(color="0.5", alpha=0.2, lw=0, label="beyond the range of trust"))
@@ -143,7 +152,7 @@ def _entries(result: Labelled, names: Sequence[str], *, marked: bool, shaded: bo
 
 
 def _add_legend(
-    figure: "Figure", result: Labelled, entries: list[Any], overlays: list[str], palette: Sequence[str]
+    figure: "Figure", result: ResultView, entries: list[Any], overlays: list[str], palette: Sequence[str]
 ) -> None:
     """Add a legend below the panels, and a colour bar of the swept values where cells are too many to name.
 
@@ -151,11 +160,11 @@ def _add_legend(
     """
     from matplotlib.lines import Line2D
 
-    cells, handles = cells_of(result), list[Any]()
+    cells, handles = result.cells, list[Any]()
     if len(cells) == 1:
         handles += entries
     elif len(cells) <= MAX_NAMED:
-        labels = [escape_controls(cell_label(result, cell)).replace("$", r"\$") for cell in cells]  # no mathematics
+        labels = [escape_controls(result.label(cell)).replace("$", r"\$") for cell in cells]  # no mathematics
         handles += [
             Line2D([], [], color=colour, lw=1.8, label=label) for colour, label in zip(palette, labels, strict=True)
         ]
@@ -173,7 +182,7 @@ def _add_legend(
         figure.legend(handles=handles, loc="outside lower center", frameon=False, fontsize=8, ncols=columns)
 
 
-def _add_colour_bar(figure: "Figure", result: Labelled, palette: Sequence[str]) -> None:
+def _add_colour_bar(figure: "Figure", result: ResultView, palette: Sequence[str]) -> None:
     """Add a colour bar of the swept values: of the key along which alone they vary, else of the numbers of cells."""
     from matplotlib.cm import ScalarMappable
     from matplotlib.colors import ListedColormap, Normalize
@@ -184,7 +193,7 @@ def _add_colour_bar(figure: "Figure", result: Labelled, palette: Sequence[str]) 
     shown = np.unique(np.linspace(0, len(palette) - 1, 6).astype(int))
     if coordinate is None:
         bar.set_ticks(list(map(float, shown)), labels=[str(number) for number in shown])
-        bar.set_label(f"cells of {', '.join(swept_sizes(result))}, the last key fastest")
+        bar.set_label(f"cells of {', '.join(result.sweep)}, the last key fastest")
         return
     name, values = coordinate
     if values.values.dtype.kind in "if":
@@ -197,20 +206,20 @@ def _add_colour_bar(figure: "Figure", result: Labelled, palette: Sequence[str]) 
     bar.set_ticks(list(map(float, shown)), labels=labels)
 
 
-def _only_coordinate(result: Labelled) -> tuple[str, Array] | None:
+def _only_coordinate(result: ResultView) -> tuple[str, Array] | None:
     """Return the swept key along which alone cells vary; None where there are several."""
-    names = [name for name, size in swept_sizes(result).items() if size > 1]
+    names = [name for name, size in result.sweep.items() if size > 1]
     if len(names) != 1:
         return None
     return next(((name, array) for name, array in result.coordinates.items() if array.dims == (names[0],)), None)
 
 
-def _pull_offs(result: Labelled, quantity: Quantity, against: str, palette: Sequence[str]) -> list[Mark]:
+def _pull_offs(result: ResultView, quantity: Quantity, against: str, palette: Sequence[str]) -> list[Mark]:
     """Return the mean pull-off of each cell, where the picture has its separation and the legend names the cells."""
-    name, cells = _PULL_OFF.get(quantity.variable, ""), cells_of(result)
-    if against != "separation" or not holds(result, name) or len(cells) > MAX_NAMED:
+    name, cells = _PULL_OFF.get(quantity.variable, ""), result.cells
+    if against != "separation" or not result.holds(name) or len(cells) > MAX_NAMED:
         return []
-    (force, force_error), (place, place_error) = (mean_of(result, each) for each in (name, "pull_off_separation"))
+    (force, force_error), (place, place_error) = (result.mean(each) for each in (name, "pull_off_separation"))
     force, force_error = quantity.scaled(force), quantity.scaled(force_error)
     shown = list(palette) if len(cells) > 1 else [BRANCH_COLOURS["unloading"]]
     return [
@@ -220,10 +229,7 @@ def _pull_offs(result: Labelled, quantity: Quantity, against: str, palette: Sequ
     ]
 
 
-def _trusted(result: Labelled, against: str) -> float:
+def _trusted(result: ResultView, against: str) -> float:
     """Return the separation below which a law of one cell is not to be trusted; NaN where there is none."""
-    name = "trusted_separation"
-    if against != "separation" or name not in result.variables or len(cells_of(result)) > 1:
-        return float("nan")
-    values = result.variables[name].values
-    return float(np.nanmax(values)) if np.isfinite(values).any() else float("nan")
+    known = result.known("trusted_separation")
+    return float(known.max()) if against == "separation" and known.size and len(result.cells) == 1 else float("nan")

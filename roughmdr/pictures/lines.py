@@ -3,9 +3,7 @@
 from typing import NamedTuple
 
 from roughmdr.numerics.arguments import Floats
-from roughmdr.result.layout import cells_of, controlled_values
-from roughmdr.result.means import holds, mean_of
-from roughmdr.storage.labelled import Labelled
+from roughmdr.result.view import ResultView
 
 EXPECTED = "expected"
 REFERENCE = "boundary elements"
@@ -29,15 +27,15 @@ class Overlay(NamedTuple):
     remarks: list[str]
 
 
-def overlay_reference(result: Labelled, names: list[str]) -> Overlay:
+def overlay_reference(result: ResultView, names: list[str]) -> Overlay:
     """Return the mean law by boundary elements of each cell, in those of the variables that the result has of it."""
-    given = [name for name in names if holds(result, f"reference_{name}")]
+    given = [name for name in names if result.holds(f"reference_{name}")]
     if not given:
         return Overlay([], [f"not drawn: {_ABSENT}"])
-    separation = controlled_values(result)
+    separation = result.path
     lines = [
-        OverlayLine(REFERENCE, name, number, separation[cell], mean_of(result, f"reference_{name}")[0][cell])
+        OverlayLine(REFERENCE, name, number, separation[cell], result.mean(f"reference_{name}")[0][cell])
         for name in given
-        for number, cell in enumerate(cells_of(result))
+        for number, cell in enumerate(result.cells)
     ]
     return Overlay(lines, ["drawn"])

@@ -12,7 +12,7 @@ from roughmdr.interaction.placed import sides_of
 from roughmdr.numerics.arguments import Floats
 from roughmdr.pictures.snapshot import Snapshot
 from roughmdr.pictures.style import COLOUR_MAP, Scale, in_words, set_title
-from roughmdr.storage.labelled import Labelled
+from roughmdr.result.view import ResultView
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -57,7 +57,7 @@ class Frame(NamedTuple):
 
 
 def draw_map(
-    result: Labelled,
+    result: ResultView,
     file: Path | None = None,
     *,
     cell: tuple[int, ...] | None = None,

@@ -9,11 +9,9 @@ from roughmdr.errors import RoughmdrError, StoreError
 from roughmdr.numerics.arguments import Floats
 from roughmdr.pictures.curves import Quantity
 from roughmdr.pictures.request import Request
-from roughmdr.result.layout import OVER_AREA, stored_variables, swept_sizes
-from roughmdr.result.means import holds, mean_of
+from roughmdr.result.view import ResultView
 from roughmdr.schema.wording import suggestion
-from roughmdr.storage.labelled import Labelled
-from roughmdr.variables import LAW_VARIABLES, PULL_OFF, RUN_VARIABLES
+from roughmdr.variables import LAW_VARIABLES, OVER_AREA, PULL_OFF, RUN_VARIABLES
 
 _PULL_OFF = "pull_off_force"
 _PLACES = ("force", "pressure", "contact_fraction", "separation")
@@ -31,43 +29,43 @@ class Number(NamedTuple):
     """Where along the path it is taken; empty of what is no curve."""
 
 
-def number_of(result: Labelled, request: Request) -> Number:
+def number_of(result: ResultView, request: Request) -> Number:
     """Return the number that is asked for; StoreError where the result lacks it."""
     if len(request.variables) > 1:
         raise StoreError(f"variables are {', '.join(request.variables)}; a sweep is drawn of one")
     if len(request.at) > 1:
         raise StoreError(f"at names {', '.join(request.at)}; a law is taken at one of them")
     name = request.variables[0] if request.variables else _usual(result, request)
-    if name in stored_variables(result) or (request.at and name in LAW_VARIABLES):
+    if name in result.curves or (request.at and name in LAW_VARIABLES):
         return _of_curve(result, name, request)
     if request.per_area:
         name = OVER_AREA.get(name, name)
     declared = {**PULL_OFF, **RUN_VARIABLES}
-    if name not in declared or not holds(result, name) or not declared[name].units:
-        available = [*stored_variables(result), *(each for each in declared if holds(result, each))]
+    if name not in declared or not result.holds(name) or not declared[name].units:
+        available = [*result.curves, *(each for each in declared if result.holds(each))]
         raise StoreError(f"variable {name!r} is not in the result{suggestion(name, available)}")
     if request.at:
         raise StoreError(f"at does not go with {name}, which is no curve")
     if name in result.variables and "realization" not in result.variables[name].dims:
         mean = np.asarray(result.variables[name].values, dtype=np.float64)
         return Number(name, declared[name].units, mean, np.full_like(mean, np.nan), "")
-    return Number(name, declared[name].units, *mean_of(result, name), "")
+    return Number(name, declared[name].units, *result.mean(name), "")
 
 
-def _usual(result: Labelled, request: Request) -> str:
+def _usual(result: ResultView, request: Request) -> str:
     """Return the variable that a sweep is usually about: the pull-off force or, the tangential one first, the force."""
-    if not request.at and holds(result, _PULL_OFF) and np.isfinite(mean_of(result, _PULL_OFF)[0]).any():
+    if not request.at and result.holds(_PULL_OFF) and np.isfinite(result.mean(_PULL_OFF)[0]).any():
         return _PULL_OFF
-    available = stored_variables(result)
+    available = result.curves
     others = [name for name in available if name not in request.at] or available
     return next((name for name in ("tangential_force", "force", "pressure") if name in others), others[0])
 
 
-def _of_curve(result: Labelled, name: str, request: Request) -> Number:
+def _of_curve(result: ResultView, name: str, request: Request) -> Number:
     """Return a variable where the loading reaches what is asked for, or else where its mean is largest."""
     quantity = Quantity.of(result, name, per_area=request.per_area)
     if not request.at:
-        mean, error = mean_of(result, name)
+        mean, error = result.mean(name)
         largest = np.nanargmax(np.where(np.isnan(mean), -np.inf, mean), axis=-1)[..., None]
         mean, error = (np.take_along_axis(values, largest, axis=-1)[..., 0] for values in (mean, error))
         where = "at its largest along the path"
@@ -80,16 +78,16 @@ def _of_curve(result: Labelled, name: str, request: Request) -> Number:
         from roughmdr.result.interpolation import at_value
 
         try:
-            found = Labelled.of(at_value(result.to_xarray(), place, cast("ArrayLike", value), "loading"))
+            found = ResultView(at_value(result.dataset, place, cast("ArrayLike", value), "loading"))
         except RoughmdrError as refused:
             raise StoreError(f"at {place} = {value}: {refused}") from None
-        if not holds(found, name):
+        if not found.holds(name):
             available = [each.removesuffix("_mean") for each in found.variables if "interpolation" not in each]
             raise StoreError(f"variable {name!r} is not in the result{suggestion(name, available)}")
-        mean, error = mean_of(found, name)
+        mean, error = found.mean(name)
         if np.isnan(mean).all():
             raise StoreError(f"at {place} = {value}: no loading reaches it")
         where = f"where loading reaches {place.replace('_', ' ')} {value}"
-    shape = tuple(swept_sizes(result).values())
+    shape = tuple(result.sweep.values())
     mean, error = (quantity.scaled(values.reshape(shape)) for values in (mean, error))
     return Number(quantity.name, quantity.unit, mean, error, where)

@@ -12,11 +12,9 @@ from roughmdr.errors import RoughmdrError, StoreError
 from roughmdr.numerics.arguments import Floats
 from roughmdr.pictures.lines import EXPECTED, Overlay, OverlayLine
 from roughmdr.pictures.theory_curves import THEORY_CURVES, TheoryCurve
-from roughmdr.result.layout import control_of, controlled_values
+from roughmdr.result.view import ResultView
 from roughmdr.scene import read
-from roughmdr.schema.toml_text import parse_toml
 from roughmdr.schema.wording import count_by_cell
-from roughmdr.storage.labelled import Labelled
 from roughmdr.theory.equal_summits import Variable
 from roughmdr.variables import LATERAL
 
@@ -31,16 +29,16 @@ _THEORY_VARIABLES: dict[str, tuple[Variable, bool]] = {
 _SEPARATION_RTOL = 1e-9  # of the largest separation
 
 
-def plan_of_result(file: Path | None, result: Labelled) -> Plan:
+def plan_of_result(file: Path | None, result: ResultView) -> Plan:
     """Return the plan of the scene in a result, which was read from ``file`` unless that is None.
 
     SceneError if that scene cannot be read again, StoreError if the result has other cells or other separations.
     """
-    if control_of(result) != "separation":
-        lateral = control_of(result) == LATERAL.name
+    if result.control != "separation":
+        lateral = result.control == LATERAL.name
         where = "a lateral path" if lateral else "a path of loads, of a preload or behind a spring"
         raise StoreError(f"{file or 'result'}: theories and the expected law need path.separation; this is {where}")
-    plan, stored = make_plan(read(file or parse_toml(result.attrs["scene"]))), controlled_values(result)
+    plan, stored = make_plan(read(file or result.scene)), result.path
     planned = np.array([cell.values for cell in plan.cells])
     if (
         stored.size != planned.size

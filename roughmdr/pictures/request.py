@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Literal, NamedTuple
 
 from roughmdr.errors import RoughmdrError, StoreError
 from roughmdr.fitting.stored import as_fit
+from roughmdr.result.view import ResultView
 from roughmdr.schema.wording import short_repr
 from roughmdr.storage.labelled import Labelled
 from roughmdr.storage.netcdf_reading import read_netcdf
@@ -27,6 +28,11 @@ class Drawable(NamedTuple):
     content: Content
     data: Labelled
     file: Path | None
+
+    @property
+    def result(self) -> ResultView:
+        """The data as a result."""
+        return ResultView(self.data)
 
     @property
     def doubt(self) -> str:

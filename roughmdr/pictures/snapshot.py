@@ -11,11 +11,9 @@ from roughmdr.errors import StoreError
 from roughmdr.loading.path import branches
 from roughmdr.numerics.arguments import Floats
 from roughmdr.pictures.style import in_words
-from roughmdr.result.layout import cell_label, cells_of, control_of, controlled_values, estimator_of, method_of
+from roughmdr.result.view import ResultView
 from roughmdr.scene import Scene, read
-from roughmdr.schema.toml_text import parse_toml
 from roughmdr.schema.wording import short_repr
-from roughmdr.storage.labelled import Labelled
 from roughmdr.variables import DONE, SEPARATION
 
 _RTOL = 1e-6  # of the largest force of a realisation, by which that of the contacts may be off
@@ -37,7 +35,7 @@ class Snapshot(NamedTuple):
     @classmethod
     def of(
         cls,
-        result: Labelled,
+        result: ResultView,
         file: Path | None,
         *,
         cell: tuple[int, ...] | None = None,
@@ -51,7 +49,7 @@ class Snapshot(NamedTuple):
         StoreError where there is no such cell, realisation or step, where it was not computed from asperities, or where
         these are not those of the result; SceneError where its scene cannot be read again.
         """
-        cells = cells_of(result)
+        cells = result.cells
         cell = cells[0] if cell is None else cell
         if cell not in cells:
             last = ", ".join(map(str, cells[-1]))
@@ -63,10 +61,10 @@ class Snapshot(NamedTuple):
             raise StoreError(f"step is {step}; the path of the result has steps 0 to {path.size - 1}")
         if np.isnan(path[step]):
             raise StoreError(f"step is {step}, at which there is no separation: the load has pulled the flat off")
-        scene = read(file or parse_toml(result.attrs["scene"])).cells[cells.index(cell)]
+        scene = read(file or result.scene).cells[cells.index(cell)]
         if scene.viscoelastic is not None:
             raise StoreError("the result is viscoelastic: single contacts are not computed of its scene")
-        method = method_of(result, cell) or estimator_of(result)
+        method = result.method(cell) or result.estimator
         if method == "expected":
             raise StoreError(
                 "the result is an expected law, which has no asperities; run its scene with batch.estimator = 'sampled'"
@@ -92,11 +90,11 @@ class Snapshot(NamedTuple):
         )
         if on_grid:
             where += "; the result is by boundary elements, these are contacts coupled in pairs"
-        label = cell_label(result, cell)
+        label = result.label(cell)
         return cls(scene, ensemble, contacts, float(path[step]), f"{label}, {where}" if label else where)
 
 
-def _check_realization(result: Labelled, cell: tuple[int, ...], realization: int) -> None:
+def _check_realization(result: ResultView, cell: tuple[int, ...], realization: int) -> None:
     """Raise StoreError unless a realisation of a cell was computed."""
     status = result.variables["status"]
     kept = "realization" in status.dims
@@ -107,19 +105,19 @@ def _check_realization(result: Labelled, cell: tuple[int, ...], realization: int
         raise StoreError(f"realization is {realization}, which was not computed in this cell")
 
 
-def _separations(result: Labelled, cell: tuple[int, ...], realization: int) -> Floats:
+def _separations(result: ResultView, cell: tuple[int, ...], realization: int) -> Floats:
     """Return the separation at each step [m]; NaN where a load has pulled the flat off."""
-    if control_of(result) == SEPARATION.name:
-        return np.array(controlled_values(result)[cell])
+    if result.control == SEPARATION.name:
+        return np.array(result.path[cell])
     if SEPARATION.name not in result.variables:
         raise StoreError(
-            f"the result has {control_of(result)} for its path, and not the separations of each realisation; "
+            f"the result has {result.control} for its path, and not the separations of each realisation; "
             "run its scene with output.keep = 'curves'"
         )
     return np.array(result.variables[SEPARATION.name].values[(*cell, realization)])
 
 
-def _closest(result: Labelled, run: tuple[int, ...], path: Floats) -> int:
+def _closest(result: ResultView, run: tuple[int, ...], path: Floats) -> int:
     """Return the first step at which the flat is closest, of those at which the result has a force where it tells."""
     force = result.variables.get("force")
     known = np.isfinite(path)
@@ -128,7 +126,7 @@ def _closest(result: Labelled, run: tuple[int, ...], path: Floats) -> int:
     return int(np.argmin(np.where(known, path, np.inf)))
 
 
-def _on_grid(result: Labelled, run: tuple[int, ...]) -> bool:
+def _on_grid(result: ResultView, run: tuple[int, ...]) -> bool:
     """Return whether a run was computed by boundary elements; of statistics that of any of its cell."""
     if "grid_points" not in result.variables:
         return False
@@ -136,7 +134,7 @@ def _on_grid(result: Labelled, run: tuple[int, ...]) -> bool:
     return bool(grid[run[: grid.ndim]] > 0.0)
 
 
-def _check_force(result: Labelled, run: tuple[int, ...], step: int, force: float) -> None:
+def _check_force(result: ResultView, run: tuple[int, ...], step: int, force: float) -> None:
     """Raise StoreError where contacts have another force than the result."""
     if "force" not in result.variables:
         return

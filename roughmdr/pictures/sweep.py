@@ -9,10 +9,10 @@ from roughmdr.numerics.arguments import Floats
 from roughmdr.pictures.number import Number, number_of
 from roughmdr.pictures.request import Request
 from roughmdr.pictures.style import BRANCH_COLOURS, COLOUR_MAP, Scale, set_title
-from roughmdr.result.layout import cells_of, done_of, realizations_of, swept_sizes, swept_values
 from roughmdr.result.trust import pull_off_error_of, trust_of_result
+from roughmdr.result.view import ResultView
 from roughmdr.schema.wording import escape_controls, suggestion
-from roughmdr.storage.labelled import Array, Labelled
+from roughmdr.storage.labelled import Array
 from roughmdr.variables import swept_name
 
 if TYPE_CHECKING:
@@ -74,7 +74,7 @@ def _is_even(values: Floats) -> bool:
     return values.size < 3 or bool(np.ptp(steps) <= _EVEN * np.abs(steps).max())
 
 
-def draw_sweep(result: Labelled, request: Request, note: str = "") -> "Figure":
+def draw_sweep(result: ResultView, request: Request, note: str = "") -> "Figure":
     """Draw a number of each cell of a sweep against its swept keys.
 
     The number is a variable of the result, the pull-off force where there is one unless it is named; of a law where
@@ -84,14 +84,14 @@ def draw_sweep(result: Labelled, request: Request, note: str = "") -> "Figure":
     """
     from matplotlib.figure import Figure
 
-    if not done_of(result).any():
+    if not result.done.any():
         raise StoreError("there is nothing to draw: no run was computed")
     axes = _axes(result, request.x)
     number = number_of(result, request)
     log = _spans_decades(number.mean) if request.log is None else request.log
     if log and np.nanmax(number.mean) < 0.0:
         number = number._replace(name=f"minus {number.name}", mean=-number.mean)
-    swept = list(swept_sizes(result))
+    swept = list(result.sweep)
     order = [swept.index(axis.name if axis.name in swept else "cell") for axis in axes]
     scale = Scale.of(number.mean, number.name, number.unit)
     mean, error = (scale(values).transpose(order) for values in (number.mean, number.error))
@@ -114,9 +114,9 @@ def draw_sweep(result: Labelled, request: Request, note: str = "") -> "Figure":
     return figure
 
 
-def _axes(result: Labelled, asked: str | None) -> list[Axis]:
+def _axes(result: ResultView, asked: str | None) -> list[Axis]:
     """Return the swept keys that are drawn, that ``asked`` for first: up to three, or one of those swept together."""
-    sizes = swept_sizes(result)
+    sizes = result.sweep
     if not sizes:
         raise StoreError("nothing was swept: the result has one cell, of which the law can be drawn")
     together = sizes.keys() == {"cell"}
@@ -136,20 +136,20 @@ def _axes(result: Labelled, asked: str | None) -> list[Axis]:
     return [Axis.of(name, result.coordinates[name]) for name in names]
 
 
-def _swept_keys(result: Labelled) -> list[str]:
-    return [*swept_values(result.coordinates, list(swept_sizes(result)), cells_of(result)[0])]
+def _swept_keys(result: ResultView) -> list[str]:
+    return [*result.swept(result.cells[0])]
 
 
-def _swept_together(result: Labelled, shown: str) -> str:
+def _swept_together(result: ResultView, shown: str) -> str:
     """Name the keys that change along with the one that is shown."""
-    others = [name for name in _swept_keys(result) if name != shown] if "cell" in swept_sizes(result) else []
+    others = [name for name in _swept_keys(result) if name != shown] if "cell" in result.sweep else []
     labels = [str(result.coordinates[name].attrs.get("long_name", name)).removeprefix("swept ") for name in others]
     return f"{', '.join(labels)} {'changes' if len(labels) == 1 else 'change'} along with it" if labels else ""
 
 
-def _words(result: Labelled, number: Number, scale: Scale) -> str:
+def _words(result: ResultView, number: Number, scale: Scale) -> str:
     """Describe where the number is taken, of how many realisations it is the mean, and its error."""
-    count = realizations_of(result)
+    count = result.realizations
     told = [number.where, f"mean of {count} realisations" if count > 1 else "one realisation"]
     errors = number.error[np.isfinite(number.error)]
     if errors.size:
@@ -168,7 +168,7 @@ def _spans_decades(numbers: Floats) -> bool:
     return same and bool(sizes.max() > _DECADES * sizes.min())
 
 
-def _model_note(result: Labelled, number: Number) -> str:
+def _model_note(result: ResultView, number: Number) -> str:
     """Return how far the model may be off, where the number is a force: of a pull-off, that of pull-offs."""
     if number.unit not in ("N", "Pa"):
         return ""

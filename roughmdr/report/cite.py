@@ -12,13 +12,12 @@ from roughmdr.report import citations as papers
 from roughmdr.report import citations_of_layers as layer_papers
 from roughmdr.report.citations import Paper
 from roughmdr.result.given import given_result
-from roughmdr.result.layout import done_of
+from roughmdr.result.view import ResultView
 from roughmdr.scene import Scene, read
 from roughmdr.schema.keywords import named_keywords
 from roughmdr.schema.quantities import adheres
 from roughmdr.schema.toml_text import parse_toml
 from roughmdr.schema.wording import printable
-from roughmdr.storage.labelled import Labelled
 from roughmdr.variables import CONDUCTANCES
 
 if TYPE_CHECKING:
@@ -74,7 +73,7 @@ def cite(target: "str | Path | xr.Dataset | Scene", *, bibtex: bool = False) -> 
     return describe_papers(result.attrs["scene"], result, bibtex=bibtex)
 
 
-def describe_papers(scene: str, result: Labelled | None, *, bibtex: bool) -> str:
+def describe_papers(scene: str, result: ResultView | None, *, bibtex: bool) -> str:
     """Return that text of a scene, as TOML, and of its ``result`` where there is one."""
     used = _Used.of(scene, result)
     told = [*_papers(used), *(("software", paper) for paper in papers.SOFTWARE.values())]
@@ -94,10 +93,10 @@ class _Used(NamedTuple):
     """Parts that a scene uses in any of its cells; of a result those that were used indeed."""
 
     table: dict[str, Any]
-    result: Labelled | None
+    result: ResultView | None
 
     @classmethod
-    def of(cls, scene: str, result: Labelled | None) -> "_Used":
+    def of(cls, scene: str, result: ResultView | None) -> "_Used":
         """Return what a scene, as TOML, and its result use."""
         return cls(parse_toml(scene), result)
 
@@ -130,7 +129,7 @@ class _Used(NamedTuple):
         if self.result is not None and "adhesion_law" in self.result.variables:
             law = self.result.variables["adhesion_law"]
             names = str(law.attrs["flag_meanings"]).split()
-            return {names[int(number)] for number in np.unique(law.values[done_of(self.result)])} - {"none"}
+            return {names[int(number)] for number in np.unique(law.values[self.result.done])} - {"none"}
         models = set(self.values("adhesion.model"))
         return models - {"auto"} | ({"jkr", "dugdale"} if "auto" in models else set())
 
@@ -147,7 +146,7 @@ class _Used(NamedTuple):
         if "reference" in self.table:
             return True
         if self.result is not None and "grid_points" in self.result.variables:
-            return bool(np.nanmax(self.result.variables["grid_points"].values, initial=0.0) > 0.0)
+            return self.result.largest("grid_points") > 0.0
         return self.result is None and "boundary_elements" in self.values("interaction.beyond")
 
 

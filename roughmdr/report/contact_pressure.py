@@ -5,14 +5,13 @@ from collections.abc import Iterator
 import numpy as np
 
 from roughmdr.numerics.arguments import Floats
-from roughmdr.result.means import holds, mean_of
+from roughmdr.result.view import ResultView
 from roughmdr.schema.units import format_quantity
-from roughmdr.storage.labelled import Labelled
 
 _ELASTIC = "plastic flow is not modelled: above about the hardness of the softer body they yield, and become larger"
 
 
-def contact_pressure_lines(result: Labelled) -> Iterator[tuple[str, str]]:
+def contact_pressure_lines(result: ResultView) -> Iterator[tuple[str, str]]:
     """Yield mean force over mean contact area where that area is largest; nothing without both, or under tension."""
     asperities, elements = _range(result, ""), _range(result, "reference_")
     if asperities:
@@ -20,11 +19,11 @@ def contact_pressure_lines(result: Labelled) -> Iterator[tuple[str, str]]:
         yield "pressure", f"{asperities}{beside} on average in the contacts at closest approach; {_ELASTIC}"
 
 
-def _range(result: Labelled, of: str) -> str:
+def _range(result: ResultView, of: str) -> str:
     """Return the pressures of all cells; ``of`` is what the names of the variables begin with."""
-    if not holds(result, f"{of}force") or (area := _mean_area(result, of)) is None:
+    if not result.holds(f"{of}force") or (area := _mean_area(result, of)) is None:
         return ""
-    force = mean_of(result, f"{of}force")[0]
+    force = result.mean(f"{of}force")[0]
     known = np.where(np.isfinite(area) & np.isfinite(force), area, 0.0)
     closest = known.argmax(axis=-1)[..., None]
     largest, there = (np.take_along_axis(each, closest, -1)[..., 0] for each in (known, force))
@@ -36,10 +35,10 @@ def _range(result: Labelled, of: str) -> str:
     return format_quantity(low, "Pa", to=high if high > 1.01 * low else None)
 
 
-def _mean_area(result: Labelled, of: str) -> Floats | None:
+def _mean_area(result: ResultView, of: str) -> Floats | None:
     """Return the mean contact area [m2] over swept keys and step; None where a result does not have it."""
-    if holds(result, f"{of}contact_area"):
-        return mean_of(result, f"{of}contact_area")[0]
-    if holds(result, fraction := f"{of}contact_fraction") and "nominal_area" in result.variables:
-        return np.asarray(mean_of(result, fraction)[0] * result.variables["nominal_area"].values[..., None])
+    if result.holds(f"{of}contact_area"):
+        return result.mean(f"{of}contact_area")[0]
+    if result.holds(fraction := f"{of}contact_fraction") and "nominal_area" in result.variables:
+        return np.asarray(result.mean(fraction)[0] * result.variables["nominal_area"].values[..., None])
     return None

@@ -7,9 +7,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from roughmdr.numerics.arguments import Floats
-from roughmdr.result import layout
+from roughmdr.result.view import ResultView
 from roughmdr.schema.toml_text import parse_toml
-from roughmdr.storage.labelled import Labelled
 
 if TYPE_CHECKING:
     from roughmdr.batch.foresee import Prospect
@@ -48,11 +47,11 @@ def sample_lines(effective: list[Floats], scene: str) -> Iterator[tuple[str, str
     )
 
 
-def sample_of_result(result: Labelled) -> Iterator[tuple[str, str]]:
+def sample_of_result(result: ResultView) -> Iterator[tuple[str, str]]:
     """Yield the line "sample" of a result; nothing where an earlier version did not store what it takes."""
     name = "effective_contacts"
     if name in result.variables:
-        runs = [np.atleast_1d(result.variables[name].values[cell]) for cell in layout.cells_of(result)]
+        runs = [np.atleast_1d(result.variables[name].values[cell]) for cell in result.cells]
         yield from sample_lines(runs, result.attrs["scene"])
 
 

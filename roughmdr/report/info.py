@@ -7,8 +7,8 @@ from roughmdr.fitting.stored import given_fit
 from roughmdr.fitting.words import describe_fit
 from roughmdr.report.summary import describe_cells, describe_origin, describe_result
 from roughmdr.result.given import given_result
+from roughmdr.result.view import ResultView
 from roughmdr.schema.keywords import named_keywords
-from roughmdr.storage.labelled import Labelled
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -52,7 +52,7 @@ def info(result: "str | Path | xr.Dataset", *, cells: bool = False) -> str:
     return describe_fit(fit) if fit is not None else describe(*given_result(result), cells=cells)
 
 
-def describe(result: Labelled, file: Path | None, *, cells: bool) -> str:
+def describe(result: ResultView, file: Path | None, *, cells: bool) -> str:
     """Return that text of a result that was read, from ``file`` unless that is None."""
     if cells:
         return describe_cells(result)

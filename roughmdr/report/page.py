@@ -17,12 +17,10 @@ from roughmdr.pictures.style import png_of, styled
 from roughmdr.report.cite import describe_papers
 from roughmdr.report.summary import describe_cells, summary_lines
 from roughmdr.result.given import given_result
-from roughmdr.result.layout import cells_of, done_of, estimator_of, realizations_of, stored_variables, swept_sizes
-from roughmdr.result.means import holds, mean_of
+from roughmdr.result.view import ResultView
 from roughmdr.schema.keywords import named_keywords
 from roughmdr.schema.wording import escape_controls
 from roughmdr.storage.files import check_ending, check_writable, replace_atomically
-from roughmdr.storage.labelled import Labelled
 from roughmdr.storage.result_file import check_same_kind
 
 if TYPE_CHECKING:
@@ -81,7 +79,7 @@ def check_page(path: Path, file: Path | None, *, fresh: bool) -> None:
         check_same_kind(path, "html")
 
 
-def page_of(result: Labelled, file: Path | None) -> str:
+def page_of(result: ResultView, file: Path | None) -> str:
     """Return the page of a result that was read, from ``file`` unless that is None.
 
     StoreError if no run was computed.
@@ -95,12 +93,12 @@ def page_of(result: Labelled, file: Path | None) -> str:
     return template.render(
         title=escape_controls(attrs["title"]),
         made=f"{attrs['source']}, seed {attrs['seed']}",
-        doubt="" if file is None else result.integrity_fault(),
+        doubt="" if file is None else result.doubt,
         warnings=attrs.get("warnings", "").splitlines(),
         summary=list(_summary(result)),
-        figures=list(_figures(Drawable("result", result, file))),
+        figures=list(_figures(Drawable("result", result.labelled, file))),
         errors=list(error_rows(result)),
-        cells=describe_cells(result) if len(cells_of(result)) > 1 else "",
+        cells=describe_cells(result) if len(result.cells) > 1 else "",
         left_out=[line.partition(": ")[::2] for line in attrs["left_out"].splitlines()],
         file="out.nc" if file is None else shlex.quote(file.name),
         scene=attrs["scene"].strip(),
@@ -110,7 +108,7 @@ def page_of(result: Labelled, file: Path | None) -> str:
     )
 
 
-def _summary(result: Labelled) -> Iterator[tuple[str, list[str]]]:
+def _summary(result: ResultView) -> Iterator[tuple[str, list[str]]]:
     """Yield the lines of the summary, those that go on under the name that they began with."""
     lines: dict[str, list[str]] = {}
     name = ""
@@ -128,10 +126,10 @@ def _summary(result: Labelled) -> Iterator[tuple[str, list[str]]]:
 
 def _figures(source: Drawable) -> Iterator[_Figure]:
     """Yield the pictures: of a sweep its number, each variable over the path, and how the errors converge."""
-    swept = [size for size in swept_sizes(source.data).values() if size > 1]
+    swept = [size for size in source.result.sweep.values() if size > 1]
     if swept:
         yield _figure(source, Request("sweep"), "the sweep")
-    for name in stored_variables(source.data):
+    for name in source.result.curves:
         yield _figure(source, Request("law", (name,)), f"{name.replace('_', ' ')} over the path")
     with suppress(StoreError):  # of single realisations, statistics and expected laws there is no convergence
         yield _figure(source, Request("convergence"), "errors over the number of realisations")
@@ -157,35 +155,36 @@ class ErrorRow(NamedTuple):
     meaning: str
 
 
-def error_rows(result: Labelled) -> Iterator[ErrorRow]:
+def error_rows(result: ResultView) -> Iterator[ErrorRow]:
     """Yield the errors of a result that are known, the largest of each over its runs."""
-    expected = estimator_of(result) == "expected"
-    numerical = result.variables["numerical_error"].values[done_of(result)]
+    expected = result.estimator == "expected"
+    numerical = result.variables["numerical_error"].values[result.done]
     if numerical.size:
         name = "integration" if expected else "rounding"
         yield ErrorRow(name, float(numerical.max()), "numerical error of the force, over the largest force")
-    if realizations_of(result) > 1:
+    if result.realizations > 1:
         yield from _of_draws(result)
-    if "model_error" in result.variables and not np.isnan(values := result.variables["model_error"].values).all():
-        yield ErrorRow("model", float(np.nanmax(values)), "assumptions of the model, at closest approach, of the force")
+    if result.known("model_error").size:
+        yield ErrorRow(
+            "model", result.largest("model_error"), "assumptions of the model, at closest approach, of the force"
+        )
         for part, reason in PARTS.items():
-            size = float(np.nanmax(result.variables[part].values, initial=0.0)) if part in result.variables else 0.0
-            if size > 0.0:
+            if (size := result.largest(part)) > 0.0:
                 yield ErrorRow(f"– {part.removesuffix('_error').replace('_', ' ')}", size, f"part of it: {reason}")
 
 
-def _of_draws(result: Labelled) -> Iterator[ErrorRow]:
+def _of_draws(result: ResultView) -> Iterator[ErrorRow]:
     """Yield the standard errors of the mean over the realisations."""
-    name = next((each for each in ("force", "pressure") if holds(result, each)), None)
+    name = next((each for each in ("force", "pressure") if result.holds(each)), None)
     if name is not None:
-        mean, error = mean_of(result, name)
+        mean, error = result.mean(name)
         largest = np.abs(mean).max(axis=-1, initial=0.0)
         shares = error.max(axis=-1)[largest > 0.0] / largest[largest > 0.0]
         if np.isfinite(shares).any():
             meaning = "standard error of the mean force over the realisations, over the largest force"
             yield ErrorRow("draws", float(np.nanmax(shares)), meaning)
-    if holds(result, "pull_off_force"):
-        mean, error = mean_of(result, "pull_off_force")
+    if result.holds("pull_off_force"):
+        mean, error = result.mean("pull_off_force")
         known = np.isfinite(error) & (mean < 0.0)
         if known.any():
             meaning = "standard error of the mean pull-off force over the realisations, of itself"

@@ -5,18 +5,17 @@ from collections.abc import Iterator
 import numpy as np
 
 from roughmdr.elements.refine import LIGHT
-from roughmdr.result.means import holds, mean_of
-from roughmdr.storage.labelled import Labelled
+from roughmdr.result.view import ResultView
 
 
-def reference_lines(result: Labelled) -> Iterator[tuple[str, str]]:
+def reference_lines(result: ResultView) -> Iterator[tuple[str, str]]:
     """Yield how far the mean force is off the reference, where that bears at least ``LIGHT`` of the largest force."""
     name = next(
-        (each for each in ("force", "pressure") if holds(result, each) and holds(result, f"reference_{each}")), None
+        (each for each in ("force", "pressure") if result.holds(each) and result.holds(f"reference_{each}")), None
     )
     if name is None:
         return
-    force, reference, error = (mean_of(result, each)[0] for each in (name, f"reference_{name}", "reference_error"))
+    force, reference, error = (result.mean(each)[0] for each in (name, f"reference_{name}", "reference_error"))
     points = float(np.nanmax(result.variables["reference_points"].values))
     largest = np.nanmax(reference, axis=-1, initial=0.0)[..., None]
     told = (reference > 0.0) & (reference >= LIGHT * largest) & np.isfinite(force)

@@ -1,5 +1,6 @@
 """A result as a table for --json."""
 
+from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
@@ -17,34 +18,33 @@ from roughmdr.report.documents import (
 )
 from roughmdr.report.few_contacts import sample_of_result
 from roughmdr.report.reference import reference_lines
-from roughmdr.report.summary import describe_failed, first_remark, resolution_error
-from roughmdr.result import layout
-from roughmdr.result.means import holds, mean_of, pull_off_counts
+from roughmdr.report.summary import describe_failed, first_remark
 from roughmdr.result.trust import trust_of_result
-from roughmdr.storage.labelled import Array, Labelled
+from roughmdr.result.view import ResultView, swept_values
+from roughmdr.storage.labelled import Array
 from roughmdr.variables import STATUSES
 
 
-def result_table(result: Labelled, file: Path | None, elapsed: float | None = None) -> ResultTable:
+def result_table(result: ResultView, file: Path | None, elapsed: float | None = None) -> ResultTable:
     """Return all that ``describe_result`` tells, as numbers; ``elapsed`` [s] is the time of the whole run."""
-    attrs, sizes = result.attrs, layout.swept_sizes(result)
+    attrs, sizes = result.attrs, result.sweep
     return {
         "title": attrs["title"],
         "file": None if file is None else str(file),
         "file_size": None if file is None else file.stat().st_size,
         "sizes": sizes,
         "coordinates": coordinate_tables(result.coordinates, sizes),
-        "realizations": layout.realizations_of(result),
+        "realizations": result.realizations,
         "steps": result.sizes["step"],
-        "control": layout.control_of(result),
-        "variables": layout.stored_variables(result),
-        "cells": [_cell(result, cell) for cell in layout.cells_of(result)],
+        "control": result.control,
+        "variables": result.curves,
+        "cells": [_cell(result, cell) for cell in result.cells],
         "path": attrs.get("path", "").splitlines(),
         "lattice": attrs.get("lattice", "").splitlines(),
         "map": attrs.get("map", "").splitlines(),
         "trust": trust_table(trust_of_result(result)),
         "sample": paragraphs(sample_of_result(result)).get("sample"),
-        "advice": paragraphs(advice_lines(attrs["scene"], resolution_error(result))).get("advice"),
+        "advice": paragraphs(advice_lines(attrs["scene"], result.largest("resolution_error"))).get("advice"),
         "reference": paragraphs(reference_lines(result)).get("reference"),
         "accuracy": attrs.get("accuracy") or None,
         "failed": describe_failed(result) or None,
@@ -63,21 +63,23 @@ def result_table(result: Labelled, file: Path | None, elapsed: float | None = No
     }
 
 
-def coordinate_tables(coordinates: dict[str, Array], sizes: dict[str, int]) -> dict[str, CoordinateTable]:
+def coordinate_tables(coordinates: Mapping[str, Array], sizes: dict[str, int]) -> dict[str, CoordinateTable]:
     """Return the coordinates of the swept keys."""
     first = (0,) * len(sizes)
     return {
         name: {"units": coordinates[name].attrs.get("units", ""), "values": coordinates[name].values.tolist()}
-        for name in layout.swept_values(coordinates, list(sizes), first)
+        for name in swept_values(coordinates, list(sizes), first)
     }
 
 
-def swept_table(coordinates: dict[str, Array], sizes: dict[str, int], cell: tuple[int, ...]) -> dict[str, float | str]:
+def swept_table(
+    coordinates: Mapping[str, Array], sizes: dict[str, int], cell: tuple[int, ...]
+) -> dict[str, float | str]:
     """Return the values of the swept keys in a cell."""
-    return {name: array.values.item() for name, array in layout.swept_values(coordinates, list(sizes), cell).items()}
+    return {name: array.values.item() for name, array in swept_values(coordinates, list(sizes), cell).items()}
 
 
-def _cell(result: Labelled, cell: tuple[int, ...]) -> CellTable:
+def _cell(result: ResultView, cell: tuple[int, ...]) -> CellTable:
     def values(name: str) -> np.ndarray:
         return np.atleast_1d(result.variables[name].values[cell]) if name in result.variables else np.array([np.nan])
 
@@ -85,10 +87,10 @@ def _cell(result: Labelled, cell: tuple[int, ...]) -> CellTable:
         return float(np.fmax.reduce(values(name)))
 
     status, counts = values("status"), values("realization_count")
-    method = layout.method_of(result, cell)
+    method = result.method(cell)
     accuracy: AccuracyTable | None = {"reached": largest("accuracy_reached"), "method": method} if method else None
     return {
-        "swept": swept_table(result.coordinates, layout.swept_sizes(result), cell),
+        "swept": swept_table(result.coordinates, result.sweep, cell),
         "realizations": status.size if np.isnan(counts).any() else int(counts[0]),
         "status": {name: int((status == code).sum()) for code, name in enumerate(STATUSES)},
         "remark": first_remark(result, cell),
@@ -104,13 +106,13 @@ def _cell(result: Labelled, cell: tuple[int, ...]) -> CellTable:
     }
 
 
-def _pull_off(result: Labelled, cell: tuple[int, ...]) -> PullOffTable | None:
+def _pull_off(result: ResultView, cell: tuple[int, ...]) -> PullOffTable | None:
     """Return the pull-off of a cell; None where no realisation has one."""
-    if "pull_off_count" not in result.variables or not (count := int(pull_off_counts(result)[cell])):
+    if "pull_off_count" not in result.variables or not (count := int(result.pull_off_counts[cell])):
         return None
 
     def mean(name: str, statistic: int = 0) -> float:
-        return float(mean_of(result, name)[statistic][cell]) if holds(result, name) else np.nan
+        return float(result.mean(name)[statistic][cell]) if result.holds(name) else np.nan
 
     return {
         "count": count,

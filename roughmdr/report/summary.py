@@ -14,8 +14,8 @@ from roughmdr.report.plausible import implausible_lines
 from roughmdr.report.prospect import prospect_lines
 from roughmdr.report.pull_off import describe_pull_off
 from roughmdr.report.reference import reference_lines
-from roughmdr.result import layout
 from roughmdr.result.trust import trust_of_result
+from roughmdr.result.view import ResultView
 from roughmdr.schema.units import format_quantity
 from roughmdr.schema.wording import format_bytes, format_seconds, format_table, printable
 from roughmdr.storage.labelled import Array, Labelled
@@ -100,21 +100,21 @@ def _lateral(plan: "Plan") -> Iterator[tuple[str, str]]:
         yield "lateral", f"displacement from {format_quantity(lowest, 'm', to=highest)}, what is normal held"
 
 
-def describe_result(result: Labelled, elapsed: float | None = None, *, left_out: bool = True) -> str:
+def describe_result(result: ResultView, elapsed: float | None = None, *, left_out: bool = True) -> str:
     """Return what a result holds; ``elapsed`` [s] is the time of the whole run, ``left_out`` whether to say why."""
     left_out_lines = result.attrs["left_out"].splitlines() if left_out else ()
     return format_table([*summary_lines(result, elapsed), *_indent("left out", left_out_lines)])
 
 
-def summary_lines(result: Labelled, elapsed: float | None = None) -> Iterator[tuple[str, str]]:
+def summary_lines(result: ResultView, elapsed: float | None = None) -> Iterator[tuple[str, str]]:
     """Yield what a result holds: names, empty where the line before goes on, and texts."""
     attrs = result.attrs
-    realizations, steps = layout.realizations_of(result), result.sizes["step"]
+    realizations, steps = result.realizations, result.sizes["step"]
     time = f"{format_seconds(float(np.nansum(_values(result, 'run_time'))))} of work in the realisations"
     if elapsed is not None:
         time = f"{format_seconds(elapsed)}; {time}, over all workers"
-    yield "computed", f"{printable(attrs['title'])}: {_sizes(layout.swept_sizes(result), realizations, steps)}"
-    yield "variables", ", ".join(layout.stored_variables(result))
+    yield "computed", f"{printable(attrs['title'])}: {_sizes(result.sweep, realizations, steps)}"
+    yield "variables", ", ".join(result.curves)
     yield from _indent("path", attrs.get("path", "").splitlines())
     yield from _motion(result.coordinates)
     yield from _indent("lattice", attrs.get("lattice", "").splitlines())
@@ -127,7 +127,7 @@ def summary_lines(result: Labelled, elapsed: float | None = None) -> Iterator[tu
     yield from contact_pressure_lines(result)
     yield from conduction_lines(result)
     yield from _indent("slip", attrs.get("slip", "").splitlines())
-    yield from advice_lines(attrs["scene"], resolution_error(result))
+    yield from advice_lines(attrs["scene"], result.largest("resolution_error"))
     yield from reference_lines(result)
     yield from _adhesion(result)
     yield from _indent("accuracy", attrs.get("accuracy", "").splitlines())
@@ -142,17 +142,11 @@ def foreseen_resolution(prospect: "Prospect") -> float:
     return max((cell.law.model_error.parts["resolution_error"] for cell in prospect.foreseen), default=0.0)
 
 
-def resolution_error(result: Labelled) -> float:
-    """Return the largest error by the resolution of a map; 0 where an earlier version did not store it."""
-    name = "resolution_error"
-    return float(np.nanmax(_values(result, name), initial=0.0)) if name in result.variables else 0.0
-
-
-def _numerical_error(result: Labelled) -> tuple[str, str]:
+def _numerical_error(result: ResultView) -> tuple[str, str]:
     """Return the line of the numerical error: of sums their rounding, of integrals over heights or time theirs."""
-    integrated = layout.estimator_of(result) == "expected" or TIME.name in result.coordinates
+    integrated = result.estimator == "expected" or TIME.name in result.coordinates
     name = "integration" if integrated else "rounding"
-    errors = _values(result, "numerical_error")[layout.done_of(result)]
+    errors = _values(result, "numerical_error")[result.done]
     if not errors.size:
         return name, _NOT_KNOWN
     return name, f"at most {errors.max():.1e} of the largest force (not the error of the model)"
@@ -172,7 +166,7 @@ def describe_ensemble(ensemble: Labelled) -> str:
     return format_table([*lines, *_indent("warning", attrs.get("warnings", "").splitlines())])
 
 
-def describe_origin(result: Labelled, size: float | None) -> str:
+def describe_origin(result: ResultView, size: float | None) -> str:
     """Return seed, versions, history and scene of a result of ``size`` bytes, None where it is in no file."""
     attrs = result.attrs
     lines = [
@@ -184,15 +178,15 @@ def describe_origin(result: Labelled, size: float | None) -> str:
     return format_table([*lines, *_indent("scene", attrs["scene"].strip().splitlines())])
 
 
-def describe_cells(result: Labelled) -> str:
+def describe_cells(result: ResultView) -> str:
     """Return a table with a line for each cell; columns that are empty for all cells are left out."""
-    lines = [_HEADINGS, *(_cell_line(result, number, cell) for number, cell in enumerate(layout.cells_of(result)))]
+    lines = [_HEADINGS, *(_cell_line(result, number, cell) for number, cell in enumerate(result.cells))]
     columns = [column for column in range(len(_HEADINGS)) if any(line[column] for line in lines[1:])]
     widths = {column: max(len(line[column]) for line in lines) for column in columns}
     return "\n".join("  ".join(f"{line[column]:<{widths[column]}}" for column in columns).rstrip() for line in lines)
 
 
-def _values(result: Labelled, name: str) -> np.ndarray:
+def _values(result: ResultView, name: str) -> np.ndarray:
     return result.variables[name].values
 
 
@@ -201,56 +195,52 @@ def _sizes(swept: dict[str, int], realizations: int, steps: int) -> str:
     return " x ".join([*parts, f"{realizations} realisation{'s' * (realizations > 1)}", f"{steps} steps"])
 
 
-def _adhesion(result: Labelled) -> Iterator[tuple[str, str]]:
+def _adhesion(result: ResultView) -> Iterator[tuple[str, str]]:
     """Yield which adhesion models were used, if the Tabor number is known."""
     if {"tabor_number", "adhesion_law"} <= set(result.variables):
         names = result.variables["adhesion_law"].attrs["flag_meanings"].split()
-        values = _values(result, "adhesion_law")[layout.done_of(result)]
+        values = _values(result, "adhesion_law")[result.done]
         counts = ", ".join(f"{names[i]} in {int((values == i).sum())}" for i in np.unique(values))
         tabor = _values(result, "tabor_number")
         if np.isfinite(tabor).any():
             yield "adhesion", f"{counts} of {values.size}; smallest Tabor number {np.nanmin(tabor):.3g}"
 
 
-def describe_failed(result: Labelled) -> str:
+def describe_failed(result: ResultView) -> str:
     """Return how many runs failed, which was the first, and why; empty if none did."""
     status = _values(result, "status")
     failed, reason = status == FAILED, ""
     if not failed.any():
         return ""
-    of_runs = "realization" in result.variables["status"].dims
     if "remark" in result.coordinates:
         first = tuple(map(int, np.argwhere(failed)[0]))
-        label = layout.cell_label(result, first[:-1] if of_runs else first)
-        names = [each for each in (label, f"realisation {first[-1]}" if of_runs else "") if each]
+        label = result.label(first[:-1] if result.keeps_runs else first)
+        names = [each for each in (label, f"realisation {first[-1]}" if result.keeps_runs else "") if each]
         said = str(result.coordinates["remark"].values[failed][0]).split("\n")[0]
         reason = f" ({': '.join(filter(None, [', '.join(names), printable(said)]))})"
-    counted = "runs" if of_runs else "cells"
+    counted = "runs" if result.keeps_runs else "cells"
     again = "the same command tries them again, which helps where a worker or its memory failed"
     return f"{int(failed.sum())} of {status.size} {counted} failed{reason}; {again}"
 
 
-def _contacts_at_ends(result: Labelled) -> Iterator[tuple[str, str]]:
+def _contacts_at_ends(result: ResultView) -> Iterator[tuple[str, str]]:
     """Yield a note if a path that unloads begins or ends in contact; fewer than half a contact, expected, are none."""
     name = "contact_count" if "contact_count" in result.variables else "contact_count_max"
-    if name not in result.variables or "unloading" not in result.coordinates["branch"].values:
+    if name not in result.variables or "unloading" not in result.branches:
         return
-    if layout.control_of(result) == LATERAL.name:  # which is in contact throughout
+    if result.control == LATERAL.name:  # which is in contact throughout
         return
     count = result.variables[name].values
     first, last = (int((count[..., step] >= 0.5).sum()) for step in (0, -1))
     if first or last:
-        total = f"{int(layout.done_of(result).sum())} {'runs' if name == 'contact_count' else 'cells'}"
+        total = f"{int(result.done.sum())} {'runs' if name == 'contact_count' else 'cells'}"
         yield "note", f"in contact at the first step in {first}, at the last in {last} of {total}"
 
 
-def _avalanches(result: Labelled) -> Iterator[tuple[str, str]]:
+def _avalanches(result: ResultView) -> Iterator[tuple[str, str]]:
     """Yield the number of avalanches of adhesive contacts that feel each other, and the largest."""
-    if result.attrs.get("interaction") != "pairwise" or "avalanche_count" not in result.variables:
-        return
-    counts, sizes = (_values(result, name) for name in ("avalanche_count", "avalanche_size_max"))
-    if np.nanmax(counts, initial=0.0) > 0.0:
-        most, largest = np.nanmax(counts), np.nanmax(sizes)
+    most, largest = (result.largest(f"avalanche_{name}") for name in ("count", "size_max"))
+    if result.attrs.get("interaction") == "pairwise" and most > 0.0:
         yield "avalanches", f"up to {most:.0f} in a realisation; contacts that jump in the largest: {largest:.0f}"
 
 
@@ -258,7 +248,7 @@ def _indent(name: str, lines: Iterable[str]) -> list[tuple[str, str]]:
     return [(name if i == 0 else "", line) for i, line in enumerate(lines)]
 
 
-def _cell_line(result: Labelled, number: int, cell: tuple[int, ...]) -> tuple[str, ...]:
+def _cell_line(result: ResultView, number: int, cell: tuple[int, ...]) -> tuple[str, ...]:
     def values(name: str) -> np.ndarray:
         return np.atleast_1d(result.variables[name].values[cell])
 
@@ -271,18 +261,18 @@ def _cell_line(result: Labelled, number: int, cell: tuple[int, ...]) -> tuple[st
     time, error = values("run_time"), values("numerical_error")
     reached = values("accuracy_reached")[0] if "accuracy_reached" in result.variables else np.nan
     return (
-        layout.cell_label(result, cell) or str(number),
+        result.label(cell) or str(number),
         outcome,
         str(count),
         format_seconds(float(np.nansum(time))),
         f"{np.nanmax(error):.1e}" if np.isfinite(error).any() else "-",
         "" if np.isnan(reached) else f"{reached:.2g}",
-        layout.method_of(result, cell),
+        result.method(cell),
         first_remark(result, cell),
     )
 
 
-def first_remark(result: Labelled, cell: tuple[int, ...]) -> str:
+def first_remark(result: ResultView, cell: tuple[int, ...]) -> str:
     """Return the first remark on a cell, and on which realisation it is."""
     if "remark" not in result.coordinates:
         return ""

@@ -24,9 +24,11 @@ from roughmdr.variables import (
     DONE,
     ESTIMATORS,
     FAILED,
+    INFINITE_VARIANCE,
     LAW_VARIABLES,
     RUN_DIAGNOSTICS,
     RUN_VARIABLES,
+    STATISTICS,
     TRAVEL,
     Variable,
 )
@@ -35,8 +37,6 @@ _REFERENCES = (
     "M. Hess, On the reduction method of dimensionality: the exact mapping of axisymmetric contact problems "
     "with and without adhesion (2012)"
 )
-_STATISTICS = {"mean": "mean", "sem": "standard error of the mean", "min": "least", "max": "greatest"}
-_INFINITE_VARIANCE = "not computed where contacts detach: there k goes to minus infinity and has no finite variance"
 _MOSTLY_DRAWN = 0.9  # fraction of the error that the draws alone show, above which rare asperities are not warned of
 
 
@@ -113,14 +113,14 @@ def _curves(
         variable, number = LAW_VARIABLES[name], list(variables).index(name)
         for statistic, array in collected.items():
             values, attrs = array[..., number, :], variable.attrs
-            if statistic in _STATISTICS:
-                attrs["long_name"] = f"{_STATISTICS[statistic]} of {variable.long_name}"
+            if statistic in STATISTICS:
+                attrs["long_name"] = f"{STATISTICS[statistic]} of {variable.long_name}"
             if statistic == "mean":
                 attrs["ancillary_variables"] = f"{name}_sem"
             if (name, statistic) == ("stiffness", "sem") and at_detachment.any():
                 values[at_detachment] = math.nan
-                attrs["comment"] = _INFINITE_VARIANCE
-            key = f"{name}_{statistic}" if statistic in _STATISTICS else name
+                attrs["comment"] = INFINITE_VARIANCE
+            key = f"{name}_{statistic}" if statistic in STATISTICS else name
             data[key] = Array((*runs, "step"), values.reshape((*plan.sizes.values(), *values.shape[1:])), attrs)
     return data
 

@@ -5,29 +5,29 @@ from numpy.typing import NDArray
 
 from roughmdr.numerics.arguments import Floats, Ints
 from roughmdr.result.between import AT_A_PLACE, REACH, off_line
-from roughmdr.result.curves import Legs
+from roughmdr.result.curves import Branch
 
 LOWER, UPPER, FRACTION = range(3)
 """Parts of a bracket: its two steps, and how far from the first to the second the value is."""
 
 
-def find_brackets(curve: Floats, values: Floats, *, legs: Legs) -> Floats:
+def find_brackets(curve: Floats, values: Floats, *, branch: Branch) -> Floats:
     """Return where curves [..., step] first reach values [value]: [..., value, part]; NaN where they never do."""
-    before, filled, usable = _joined(curve, legs)
+    before, filled, usable = _joined(curve, branch)
     return np.stack([_first(filled, value, before, usable) for value in values], axis=-2)
 
 
-def _joined(y: Floats, legs: Legs) -> tuple[Ints, Floats, NDArray[np.bool_]]:
+def _joined(y: Floats, branch: Branch) -> tuple[Ints, Floats, NDArray[np.bool_]]:
     """Return, for each step but the first, the last one before it with a value, the curve, and whether the leg holds
     both; steps without a value have that of the last step with one.
     """
     number = np.arange(y.shape[-1])
     missing = np.isnan(y)
     if not missing.any():
-        return number[:-1], y, legs.wanted[1:]
+        return number[:-1], y, branch.wanted[1:]
     last = np.maximum.accumulate(np.where(missing, 0, number), axis=-1)
     before = last[..., :-1]
-    return before, np.take_along_axis(y, last, axis=-1), legs.wanted[1:] & (before >= legs.start[1:])
+    return before, np.take_along_axis(y, last, axis=-1), branch.wanted[1:] & (before >= branch.start[1:])
 
 
 def _first(y: Floats, value: float, before: Ints, usable: NDArray[np.bool_]) -> Floats:
@@ -48,7 +48,7 @@ def _first(y: Floats, value: float, before: Ints, usable: NDArray[np.bool_]) -> 
 
 
 def interpolate(
-    curve: Floats, reached: Floats, path: Floats, brackets: Floats, *, legs: Legs, in_jumps: bool
+    curve: Floats, reached: Floats, path: Floats, brackets: Floats, *, branch: Branch, in_jumps: bool
 ) -> tuple[Floats, Floats]:
     """Return curves at brackets [..., value, part] of curves that are ``reached``, and how far they may be off.
 
@@ -65,7 +65,7 @@ def interpolate(
         value = np.where(known, np.where(fraction == 0.0, first, first + fraction * rise), np.nan)
         error = np.maximum(np.abs(first - value), np.abs(second - value))
         if not in_jumps:
-            near, there = _near(lower, upper, legs)
+            near, there = _near(lower, upper, branch)
             way = _at(reached, near)
             over = way[..., REACH + 1] - way[..., REACH]
             slope = np.where(over == 0.0, 0.0, rise / over)[..., None]
@@ -75,13 +75,13 @@ def interpolate(
     return value, np.where(np.isnan(value), np.nan, error)
 
 
-def _near(lower: Ints, upper: Ints, legs: Legs) -> tuple[Ints, NDArray[np.bool_]]:
+def _near(lower: Ints, upper: Ints, branch: Branch) -> tuple[Ints, NDArray[np.bool_]]:
     """Return the steps around brackets, [..., value, step], and whether the leg of the bracket has each."""
     away = np.arange(REACH + 1)
     steps = np.concatenate([lower[..., None] - away[::-1], upper[..., None] + away], axis=-1)
-    near = np.clip(steps, 0, legs.start.size - 1)
-    start = legs.start[upper][..., None]
-    return near, (near == steps) & (near >= start) & ((near <= upper[..., None]) | (legs.start[near] == start))
+    near = np.clip(steps, 0, branch.start.size - 1)
+    start = branch.start[upper][..., None]
+    return near, (near == steps) & (near >= start) & ((near <= upper[..., None]) | (branch.start[near] == start))
 
 
 def _at(curve: Floats, steps: Ints) -> Floats:

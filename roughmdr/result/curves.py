@@ -1,4 +1,4 @@
-"""The curves of a result as a Dataset: which they are, over which path, and those that follow from others."""
+"""The curves of a result as arrays of xarray, which may be in chunks, and those that follow from others."""
 
 from typing import TYPE_CHECKING
 
@@ -6,12 +6,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roughmdr.errors import StoreError
-from roughmdr.result.layout import OVER_AREA
+from roughmdr.numerics.arguments import Ints
+from roughmdr.result.view import ResultView
 from roughmdr.schema.wording import short_repr, suggestion
 from roughmdr.variables import (
     BRANCHES,
     CURVE_VARIABLES,
     LAW_VARIABLES,
+    OVER_AREA,
     REFERENCE_VARIABLES,
     SEPARATION,
     STEP_COORDINATES,
@@ -34,52 +36,45 @@ def is_ensemble(dataset: "xr.Dataset") -> bool:
 
 def is_result(dataset: "xr.Dataset") -> bool:
     """Return whether a dataset holds curves over the steps of a path."""
-    return "branch" in dataset.coords and bool(_controls(dataset)) and bool(curves_of(dataset))
+    controlled = any(name in dataset.coords and "step" in dataset[name].dims for name in STEP_COORDINATES)
+    return "branch" in dataset.coords and controlled and bool(curves_of(ResultView(dataset)))
 
 
-def check_result(dataset: "xr.Dataset") -> None:
-    """Raise StoreError unless a dataset is a result."""
+def result_of(dataset: "xr.Dataset") -> ResultView:
+    """Return a dataset as a result; StoreError if it is none."""
     if is_ensemble(dataset):
         raise StoreError(f"{_NEEDED}; this is an ensemble of asperities")
     if not is_result(dataset):
         names = short_repr(sorted(map(str, dataset.variables)))
         expected = "curves over step, such as force, with the coordinates branch and separation (or another control)"
         raise StoreError(f"{_NEEDED}, with {expected}; this dataset has the variables {names}")
+    return ResultView(dataset)
 
 
-def control_of(dataset: "xr.Dataset") -> str:
-    """Return the quantity that the path controls."""
-    return _controls(dataset)[0]
-
-
-def keeps_statistics(dataset: "xr.Dataset") -> bool:
-    """Return whether a result holds statistics over realisations in place of their curves."""
-    return any(f"{name}_mean" in dataset and "step" in dataset[f"{name}_mean"].dims for name in LAW_VARIABLES)
-
-
-def curves_of(dataset: "xr.Dataset") -> list[str]:
+def curves_of(result: ResultView) -> list[str]:
     """Return the variables with a curve, or a mean curve, over the steps; those of references included."""
-    suffix = "_mean" if keeps_statistics(dataset) else ""
+    suffix = "_mean" if result.keeps_statistics else ""
     names = (f"{name}{suffix}" for name in LAW_VARIABLES)
-    return [name for name in names if name in dataset.data_vars and "step" in dataset[name].dims]
+    return [name for name in names if name in result.variables and "step" in result.variables[name].dims]
 
 
-def curve(dataset: "xr.Dataset", name: str, asked: str) -> "xr.DataArray":
+def curve(result: ResultView, name: str, asked: str) -> "xr.DataArray":
     """Return a variable over the steps, or its mean, computed from another where the result does not hold it.
 
     StoreError where it holds neither; ``asked`` are the words before the name in its message, such as "x is".
     """
+    dataset = result.dataset
     for held in (name, f"{name}_mean"):
         if held in dataset.variables and "step" in dataset[held].dims:
             return alone(whole(dataset[held]))
     if name in PER_AREA and "nominal_area" in dataset:
-        total = curve(dataset, PER_AREA[name], asked)
+        total = curve(result, PER_AREA[name], asked)
         return (total / alone(dataset["nominal_area"])).assign_attrs(LAW_VARIABLES[name].attrs)
     if name == "force" and _holds(dataset, "pressure") and "nominal_area" in dataset:
-        total = curve(dataset, "pressure", asked) * alone(dataset["nominal_area"])
+        total = curve(result, "pressure", asked) * alone(dataset["nominal_area"])
         return total.assign_attrs(CURVE_VARIABLES[name].attrs)
-    held_names = [each.removesuffix("_mean") for each in curves_of(dataset)]
-    allowed = list(dict.fromkeys([*held_names, control_of(dataset)]))
+    held_names = [each.removesuffix("_mean") for each in curves_of(result)]
+    allowed = list(dict.fromkeys([*held_names, result.control]))
     if name in PER_AREA and "nominal_area" not in dataset and _holds(dataset, PER_AREA[name]):
         raise StoreError(
             f"{asked} {name!r}: from {PER_AREA[name]} only with nominal_area, which this result does not hold"
@@ -89,9 +84,9 @@ def curve(dataset: "xr.Dataset", name: str, asked: str) -> "xr.DataArray":
     raise StoreError(f"{asked} {short_repr(name)}, no variable of a result{suggestion(str(name), allowed)}")
 
 
-def separation_of(dataset: "xr.Dataset") -> "xr.DataArray":
+def separation_of(result: ResultView) -> "xr.DataArray":
     """Return the separation [m] over the steps, a coordinate or a variable."""
-    return curve(dataset, SEPARATION.name, "ds.roughmdr needs")
+    return curve(result, SEPARATION.name, "ds.roughmdr needs")
 
 
 def alone(array: "xr.DataArray") -> "xr.DataArray":
@@ -110,20 +105,16 @@ def is_reference(name: str) -> bool:
     return name.removesuffix("_mean") in REFERENCE_VARIABLES
 
 
-class Legs:
-    """The legs of a path: stretches of steps on one branch, each from the turning point before it."""
+class Branch:
+    """The steps of a result on one branch, and the legs that they are on."""
 
-    def __init__(self, dataset: "xr.Dataset", branch: str) -> None:
+    def __init__(self, result: ResultView, branch: str) -> None:
         """Take the steps of a branch; StoreError where that is none, or the path has none of it."""
         if branch not in BRANCHES:
             raise StoreError(f"branch is {branch!r}; it must be {' or '.join(map(repr, BRANCHES))}")
-        branches = dataset["branch"].to_numpy().astype(str)
-        self.wanted: NDArray[np.bool_] = branches == branch
+        self.wanted: NDArray[np.bool_] = result.branches == branch
         """Whether each step is on the branch."""
-        turns = branches[1:] != branches[:-1]
-        self.start: NDArray[np.int64] = np.maximum.accumulate(
-            np.concatenate([[0], np.where(turns, np.arange(turns.size), 0)])
-        )
+        self.start: Ints = np.concatenate([np.full_like(leg.steps, max(leg.steps[0] - 1, 0)) for leg in result.legs])
         """The step at which the leg of each step begins: the last before the turning point."""
         if not self.wanted.any():
             raise StoreError(f"branch is {branch!r}; the path of this result has no {branch}")
@@ -131,7 +122,3 @@ class Legs:
 
 def _holds(dataset: "xr.Dataset", name: str) -> bool:
     return any(each in dataset.variables and "step" in dataset[each].dims for each in (name, f"{name}_mean"))
-
-
-def _controls(dataset: "xr.Dataset") -> list[str]:
-    return [name for name in STEP_COORDINATES if name in dataset.coords and "step" in dataset[name].dims]

@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from roughmdr.errors import StoreError, level_outside
+from roughmdr.result.view import ResultView
 from roughmdr.schema.wording import short_repr
 from roughmdr.storage.labelled import Labelled
 from roughmdr.storage.result_file import read_result
@@ -15,18 +16,16 @@ if TYPE_CHECKING:
     import xarray as xr
 
 
-def given_result(result: "str | Path | xr.Dataset") -> tuple[Labelled, Path | None]:
+def given_result(result: "str | Path | xr.Dataset") -> tuple[ResultView, Path | None]:
     """Return a result, and its file if it is in one; StoreError where it is none.
 
     A UserWarning tells the caller of a public function where the numbers in a file cannot be trusted.
     """
-    import xarray as xr
-
-    if isinstance(result, xr.Dataset):
-        return as_result(Labelled.of(result)), None
+    if not isinstance(result, str | os.PathLike) and hasattr(result, "data_vars"):
+        return ResultView(as_result(Labelled.of(result))), None
     if not isinstance(result, str | os.PathLike):
         raise StoreError(f"result is {short_repr(result)}; it must be a path or a Dataset as roughmdr.run returns it")
-    data = read_result(Path(result))
-    if fault := data.integrity_fault():
-        warnings.warn(f"{result}: {fault}", UserWarning, stacklevel=level_outside())
-    return data, Path(result)
+    view = ResultView(read_result(Path(result)))
+    if view.doubt:
+        warnings.warn(f"{result}: {view.doubt}", UserWarning, stacklevel=level_outside())
+    return view, Path(result)

@@ -10,17 +10,16 @@ from roughmdr.result.between import CONFIDENCE
 from roughmdr.result.brackets import find_brackets, interpolate
 from roughmdr.result.curves import (
     PER_AREA,
-    Legs,
+    Branch,
     alone,
-    check_result,
-    control_of,
     curve,
     curves_of,
     is_reference,
-    keeps_statistics,
+    result_of,
     separation_of,
     whole,
 )
+from roughmdr.result.view import ResultView
 from roughmdr.schema.arguments import check_values
 from roughmdr.variables import LAW_VARIABLES, SEPARATION
 
@@ -36,21 +35,21 @@ def at_value(dataset: "xr.Dataset", name: str, values: ArrayLike, branch: str) -
     """Return all curves, and the separation, where that of ``name`` first reaches ``values`` on a branch."""
     import xarray as xr
 
-    check_result(dataset)
+    result = result_of(dataset)
     units = (LAW_VARIABLES | {SEPARATION.name: SEPARATION})[name].units
     wanted = check_values(name, values, units)
     if name.endswith("contact_fraction") and np.max(wanted) > 1.0:
         raise OutOfRange(f"{name} is {np.max(wanted):g}; it must be at most 1")
-    legs = Legs(dataset, branch)
+    on = Branch(result, branch)
     own, beside = name.removeprefix("reference_"), " with reference=True" if is_reference(name) else ""
-    reached = alone(curve(dataset, name, f"at_{own}{beside} needs"))
-    path = curve(dataset, control_of(dataset), "ds.roughmdr needs")
+    reached = alone(curve(result, name, f"at_{own}{beside} needs"))
+    path = curve(result, result.control, "ds.roughmdr needs")
     points = xr.DataArray(np.atleast_1d(wanted), dims=name)
     brackets = xr.apply_ufunc(
         find_brackets,
         reached,
         points,
-        kwargs={"legs": legs},
+        kwargs={"branch": on},
         input_core_dims=[["step"], [name]],
         output_core_dims=[[name, _BRACKET]],
         keep_attrs=False,
@@ -59,14 +58,14 @@ def at_value(dataset: "xr.Dataset", name: str, values: ArrayLike, branch: str) -
         dask_gufunc_kwargs={"output_sizes": {_BRACKET: 3}},
     )
     found: dict[str, xr.DataArray] = {}
-    for label, array in _curves(dataset, name).items():
+    for label, array in _curves(result, name).items():
         value, error = xr.apply_ufunc(
             interpolate,
             array,
             reached,
             path,
             brackets,
-            kwargs={"legs": legs, "in_jumps": label.removesuffix("_mean") in _IN_JUMPS},
+            kwargs={"branch": on, "in_jumps": label.removesuffix("_mean") in _IN_JUMPS},
             input_core_dims=[["step"], ["step"], ["step"], [name, _BRACKET]],
             output_core_dims=[[name], [name]],
             keep_attrs=False,
@@ -78,22 +77,23 @@ def at_value(dataset: "xr.Dataset", name: str, values: ArrayLike, branch: str) -
         found[label] = value.assign_attrs(attrs | {"ancillary_variables": f"{label}_interpolation_error"})
         found[f"{label}_interpolation_error"] = error.assign_attrs(attrs | about)
     coordinate = (name, points.values, {"units": units, "long_name": LAW_VARIABLES[name].long_name})
-    result = xr.Dataset(found, attrs=_attributes(dataset, name, branch)).assign_coords({name: coordinate})
-    return result if np.ndim(wanted) else result.isel({name: 0})
+    points_found = xr.Dataset(found, attrs=_attributes(dataset, name, branch)).assign_coords({name: coordinate})
+    return points_found if np.ndim(wanted) else points_found.isel({name: 0})
 
 
-def _curves(dataset: "xr.Dataset", name: str) -> "dict[str, xr.DataArray]":
+def _curves(result: ResultView, name: str) -> "dict[str, xr.DataArray]":
     """Return the separation, all curves, and those that follow from them, but those of ``name`` itself."""
-    curves = {each: alone(whole(dataset[each])) for each in curves_of(dataset)}
-    suffix = "_mean" if keeps_statistics(dataset) else ""
+    dataset = result.dataset
+    curves = {each: alone(whole(dataset[each])) for each in curves_of(result)}
+    suffix = "_mean" if result.keeps_statistics else ""
     for derived, total in PER_AREA.items():
         if f"{total}{suffix}" in curves and f"{derived}{suffix}" not in curves and "nominal_area" in dataset:
-            curves[f"{derived}{suffix}"] = curve(dataset, derived, "ds.roughmdr needs")
-    control = control_of(dataset)
+            curves[f"{derived}{suffix}"] = curve(result, derived, "ds.roughmdr needs")
+    control = result.control
     if control in dataset.coords:
-        curves = {control: curve(dataset, control, "ds.roughmdr needs"), **curves}
+        curves = {control: curve(result, control, "ds.roughmdr needs"), **curves}
     if SEPARATION.name not in curves and f"{SEPARATION.name}_mean" not in curves:
-        curves = {SEPARATION.name: separation_of(dataset), **curves}
+        curves = {SEPARATION.name: separation_of(result), **curves}
     return {each: array for each, array in curves.items() if each.removesuffix("_mean") != name}
 
 

@@ -12,11 +12,9 @@ from roughmdr.batch.plan import Plan
 from roughmdr.batch.rounds import CellMethod
 from roughmdr.loading.pull_off import unloadings
 from roughmdr.numerics.arguments import Floats
-from roughmdr.result.layout import OVER_AREA
 from roughmdr.storage.labelled import Array
-from roughmdr.variables import DONE, PULL_OFF, PULL_OFF_NUMBERS
+from roughmdr.variables import DONE, OVER_AREA, PULL_OFF, PULL_OFF_NUMBERS, STATISTICS
 
-_STATISTICS = {"mean": "mean", "sem": "standard error of the mean", "min": "least", "max": "greatest"}
 _FORCE, _PRESSURE = "pull_off_force", "pull_off_pressure"
 _TOTALS = (_FORCE, "pull_off_contact_area")
 
@@ -115,4 +113,4 @@ def _attributes(name: str) -> dict[str, str]:
         return PULL_OFF[name].attrs
     base, _, statistic = name.rpartition("_")
     attrs = PULL_OFF[base].attrs
-    return attrs | {"long_name": f"{_STATISTICS[statistic]} of the {attrs['long_name']}"}
+    return attrs | {"long_name": f"{STATISTICS[statistic]} of the {attrs['long_name']}"}

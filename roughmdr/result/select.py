@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roughmdr.errors import RoughmdrError, StoreError
-from roughmdr.result.layout import cell_label, controlled_values, swept_sizes
+from roughmdr.result.view import ResultView
 from roughmdr.schema.quantities import Quantity
 from roughmdr.schema.units import dimension_of
 from roughmdr.schema.wording import short_repr, suggestion
@@ -16,7 +16,7 @@ from roughmdr.variables import AUXILIARY_COORDINATES, swept_name
 _NEAR = 0.01  # of the value asked for, so that values of a logspace can be typed
 
 
-def select(result: Labelled, chosen: Mapping[str, object]) -> tuple[Labelled, str]:
+def select(result: ResultView, chosen: Mapping[str, object]) -> tuple[ResultView, str]:
     """Return the part of a result where swept keys have the values ``chosen``, and these in words.
 
     Errors as ``indices_of``.
@@ -24,13 +24,13 @@ def select(result: Labelled, chosen: Mapping[str, object]) -> tuple[Labelled, st
     return _at(result, indices_of(result, chosen))
 
 
-def cell_of(result: Labelled, chosen: Mapping[str, object]) -> tuple[int, ...]:
+def cell_of(result: ResultView, chosen: Mapping[str, object]) -> tuple[int, ...]:
     """Return the index of a cell: the first value of the swept keys that are not chosen. Errors as ``indices_of``."""
     indices = indices_of(result, chosen)
-    return tuple(indices.get(name, 0) for name in swept_sizes(result))
+    return tuple(indices.get(name, 0) for name in result.sweep)
 
 
-def pull_off_step(result: Labelled, cell: tuple[int, ...], realization: int) -> int:
+def pull_off_step(result: ResultView, cell: tuple[int, ...], realization: int) -> int:
     """Return the step of the unloading nearest to the pull-off of a realisation; StoreError where there is none."""
     if "pull_off_separation" not in result.variables or "realization" not in result.sizes:
         raise StoreError("step is 'pull-off', and the result holds none of single realisations; give its number")
@@ -39,12 +39,12 @@ def pull_off_step(result: Labelled, cell: tuple[int, ...], realization: int) -> 
     if np.isnan(place):
         raise StoreError(f"step is 'pull-off', and realisation {realization} has none; give the number of a step")
     of_run = result.variables.get("separation")
-    separation = controlled_values(result)[cell] if of_run is None else of_run.values[run]
-    away = np.where(result.coordinates["branch"].values == "unloading", np.abs(separation - place), np.inf)
+    separation = result.path[cell] if of_run is None else of_run.values[run]
+    away = np.where(result.branches == "unloading", np.abs(separation - place), np.inf)
     return int(np.nanargmin(away))
 
 
-def indices_of(result: Labelled, chosen: Mapping[str, object]) -> dict[str, int]:
+def indices_of(result: ResultView, chosen: Mapping[str, object]) -> dict[str, int]:
     """Return the indices of values of swept keys, by their dimensions.
 
     Keys may have dots or underscores; values are numbers in SI, strings with a unit, or names. Keys that are swept
@@ -54,7 +54,7 @@ def indices_of(result: Labelled, chosen: Mapping[str, object]) -> dict[str, int]
     swept = {
         name: array
         for name, array in result.coordinates.items()
-        if len(array.dims) == 1 and array.dims[0] in swept_sizes(result) and name not in AUXILIARY_COORDINATES
+        if len(array.dims) == 1 and array.dims[0] in result.sweep and name not in AUXILIARY_COORDINATES
     }
     places: dict[str, NDArray[np.bool_]] = {}
     for key, value in chosen.items():
@@ -74,17 +74,17 @@ def indices_of(result: Labelled, chosen: Mapping[str, object]) -> dict[str, int]
     return {dimension: int(there.argmax()) for dimension, there in places.items()}
 
 
-def along_longest(result: Labelled) -> tuple[Labelled, str]:
+def along_longest(result: ResultView) -> tuple[ResultView, str]:
     """Return the cells along the swept key with most values, at the middle values of others, and these in words."""
-    sizes = swept_sizes(result)
+    sizes = result.sweep
     longest = max(sizes, key=lambda name: sizes[name])
     return _at(result, {name: size // 2 for name, size in sizes.items() if name != longest})
 
 
-def _at(result: Labelled, indices: Mapping[str, int]) -> tuple[Labelled, str]:
-    places = [indices.get(name, 0) for name in swept_sizes(result)]
+def _at(result: ResultView, indices: Mapping[str, int]) -> tuple[ResultView, str]:
+    places = [indices.get(name, 0) for name in result.sweep]
     fixed = {name for name, array in result.coordinates.items() if array.dims and set(array.dims) <= set(indices)}
-    whole = [part for part in cell_label(result, tuple(places)).split(", ") if part.split(" = ")[0] in fixed]
+    whole = [part for part in result.label(tuple(places)).split(", ") if part.split(" = ")[0] in fixed]
 
     def part(array: Array) -> Array:
         index = tuple(indices.get(dim, slice(None)) for dim in array.dims)
@@ -95,7 +95,7 @@ def _at(result: Labelled, indices: Mapping[str, int]) -> tuple[Labelled, str]:
         {name: part(array) for name, array in arrays.items() if name not in indices}
         for arrays in (result.variables, result.coordinates)
     )
-    return Labelled(variables, coordinates, result.attrs), ", ".join(whole)
+    return ResultView(Labelled(variables, coordinates, result.attrs)), ", ".join(whole)
 
 
 def _index(key: str, value: object, coordinate: Array) -> int:

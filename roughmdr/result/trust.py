@@ -19,9 +19,8 @@ from roughmdr.model_error.interaction import (
 )
 from roughmdr.model_error.parts import PARTS, TRUSTED_ERROR, TRUSTED_FRACTION
 from roughmdr.numerics.arguments import Floats
-from roughmdr.schema.toml_text import parse_toml
+from roughmdr.result.view import ResultView
 from roughmdr.schema.units import format_quantity
-from roughmdr.storage.labelled import Labelled
 from roughmdr.variables import LATERAL
 
 if TYPE_CHECKING:
@@ -104,13 +103,12 @@ def trust_lines(
         yield "", _advice(known, coefficients)
 
 
-def trust_of_result(result: Labelled) -> Iterator[tuple[str, str]]:
+def trust_of_result(result: ResultView) -> Iterator[tuple[str, str]]:
     """Yield the lines of all runs of a result; of one made by an earlier version that it is not known."""
     if set(result.variables) >= _NAMES:
         numbers = {name: result.variables[name].values for name in (_NAMES | {"grid_points"}) & set(result.variables)}
         interaction = result.attrs.get("interaction")
-        table = parse_toml(result.attrs.get("scene", ""))  # a law of one ensemble has none
-        alone = {"viscoelastic", "nominal"} & table.keys()
+        alone = {"viscoelastic", "nominal"} & result.scene.keys()
         advise = LATERAL.name not in result.coordinates and not alone
         curved = "nominal" in result.attrs
         yield from trust_lines(
@@ -119,7 +117,7 @@ def trust_of_result(result: Labelled) -> Iterator[tuple[str, str]]:
             interaction=interaction,
             advise=advise,
             curved=curved,
-            summits=_has_summits(table),
+            summits=_has_summits(result.scene),
         )
     else:
         yield "trust", "not known: the result was computed by a version that did not estimate the error of its model"
@@ -132,20 +130,19 @@ def _has_summits(table: dict[str, Any]) -> bool:
     return source == "nayak" or (source == "surface" and model != "hills") or (source, model) == ("spectrum", "summits")
 
 
-def pull_off_error_of(result: Labelled) -> str:
+def pull_off_error_of(result: ResultView) -> str:
     """Return by how much independence may change the pull-off force of a result; empty where that is not known."""
-    tension = _known(_at_pull_off(result))
+    tension = _at_pull_off(result)
     if not tension.size or result.attrs.get("interaction") == "pairwise":
         return ""
-    known = {name: _known(result.variables[name].values) for name in _BY_FRACTION & set(result.variables)}
-    by_fraction = not all(known.get(name, np.empty(0)).size for name in _BY_FRACTION) or _coefficients(known)
+    known = {name: result.known(name) for name in _BY_FRACTION}
+    by_fraction = not all(each.size for each in known.values()) or _coefficients(known)
     return _pull_off_error(tension) if by_fraction else ""
 
 
-def _at_pull_off(result: Labelled) -> Floats:
-    """Return the contact fractions at the pull-offs of a result, NaN where there is none."""
-    names = [name for name in (_AT_PULL_OFF, f"{_AT_PULL_OFF}_min", f"{_AT_PULL_OFF}_max") if name in result.variables]
-    return np.concatenate([[math.nan], *(result.variables[name].values.ravel() for name in names)])
+def _at_pull_off(result: ResultView) -> Floats:
+    """Return the contact fractions at the pull-offs of a result."""
+    return np.concatenate([result.known(f"{_AT_PULL_OFF}{end}") for end in ("", "_min", "_max")])
 
 
 def _pull_off_error(tension: Floats) -> str:

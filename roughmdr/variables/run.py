@@ -186,6 +186,15 @@ PULL_OFF_OF_CELLS = declare(
 PULL_OFF = PULL_OFF_NUMBERS | PULL_OFF_PER_AREA | PULL_OFF_OF_CELLS
 """Variables of a result with an unloading."""
 
+OVER_AREA = {
+    "force": "pressure",
+    "contact_area": "contact_fraction",
+    "pull_off_force": "pull_off_pressure",
+    "pull_off_force_of_mean": "pull_off_pressure_of_mean",
+    "pull_off_contact_area": "pull_off_contact_fraction",
+}
+"""Totals, and the variables that are these over the nominal area."""
+
 CELL_VARIABLES = declare(
     ("realization_count", "1", "number of realizations of the statistics"),
     ("nominal_area", "m2", "nominal area of the surface, or of its patch"),
@@ -198,8 +207,11 @@ CELL_VARIABLES = declare(
 RUN_VARIABLES: dict[str, Variable] = RUN_DIAGNOSTICS | CELL_VARIABLES
 """Variables of a result that describe its runs and cells."""
 
-STATISTICS = ("mean", "sem", "min", "max")
-"""Endings of the names of statistics over realisations."""
+STATISTICS = {"mean": "mean", "sem": "standard error of the mean", "min": "least", "max": "greatest"}
+"""Endings of the names of statistics over realisations, and these in words."""
+
+INFINITE_VARIANCE = "not computed where contacts detach: there k goes to minus infinity and has no finite variance"
+"""Comment on the standard error of the stiffness."""
 
 AUXILIARY_COORDINATES = (
     "separation",

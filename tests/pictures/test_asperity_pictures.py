@@ -15,8 +15,8 @@ from roughmdr.kernels.adhesion import Adhesion
 from roughmdr.pictures.asperity import draw_asperity, draw_contact
 from roughmdr.pictures.one_contact import OneContact
 from roughmdr.pictures.style import save
+from roughmdr.result.view import ResultView
 from roughmdr.shapes import Shape
-from roughmdr.storage.labelled import Labelled
 
 MODULUS = 4e6
 TABLE = np.linspace(0.0, 40e-6, 21)
@@ -101,7 +101,7 @@ def test_infinite_pressures_are_marked(case: str) -> None:
 
 
 def test_the_asperity_of_a_result_is_the_one_with_the_largest_force() -> None:
-    result = Labelled.of(rm.run(scene(batch=None)))
+    result = ResultView(rm.run(scene(batch=None)))
     figure = draw_asperity(result)
     title = figure.get_suptitle()
     assert "asperity 0 of 1000 (paraboloid), that with the largest force" in title
@@ -117,14 +117,14 @@ def test_the_asperity_of_a_result_is_the_one_with_the_largest_force() -> None:
 
 
 def test_asperities_out_of_contact_are_refused() -> None:
-    result = Labelled.of(rm.run(scene(batch=None)))
+    result = ResultView(rm.run(scene(batch=None)))
     with pytest.raises(StoreError, match="asperity is 999, which is not in contact at realisation 0, step 39"):
         draw_asperity(result, asperity=999)
     with pytest.raises(StoreError, match="asperity is 1000; the realisation has asperities 0 to 999"):
         draw_asperity(result, asperity=1000)
     with pytest.raises(StoreError, match="no asperity is in contact at realisation 0, step 79"):
         draw_asperity(
-            Labelled.of(rm.run(scene(batch=None, adhesion=None, path={"separation": ["0 m", "9 um"] * 40}))), step=79
+            ResultView(rm.run(scene(batch=None, adhesion=None, path={"separation": ["0 m", "9 um"] * 40}))), step=79
         )
 
 
@@ -132,7 +132,7 @@ def test_one_of_a_pair_is_drawn_with_its_radius_among_others() -> None:
     table = scene()["asperities"] | {"count": 20, "patch": "0.1 mm"}
     path = {"separation": ["2 um", "0.5 um"]}
     coupled = scene(batch=None, asperities=table, adhesion=None, interaction={"model": "pairwise"}, path=path)
-    assert "among its neighbours" in draw_asperity(Labelled.of(rm.run(coupled))).get_suptitle()
+    assert "among its neighbours" in draw_asperity(ResultView(rm.run(coupled))).get_suptitle()
 
 
 @pytest.mark.large

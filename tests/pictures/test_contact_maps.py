@@ -17,14 +17,14 @@ from roughmdr.errors import StoreError
 from roughmdr.pictures.map import draw_ensemble, draw_map
 from roughmdr.pictures.snapshot import Snapshot
 from roughmdr.pictures.style import save
-from roughmdr.storage.labelled import Labelled
+from roughmdr.result.view import ResultView
 
 MACHINE = {"force": {"stop": "0.2 mN", "steps": 5}, "unload": True}
 
 
-def result(**changes: Any) -> Labelled:
+def result(**changes: Any) -> ResultView:
     table = {"path": {"separation": {"start": "3 sigma", "stop": "0.5 sigma", "steps": 6}, "unload": True}}
-    return Labelled.of(rm.run(scene(**{"batch": {"realizations": 2}} | table | changes)))
+    return ResultView(rm.run(scene(**{"batch": {"realizations": 2}} | table | changes)))
 
 
 def asperities(**changes: Any) -> dict[str, Any]:
@@ -37,13 +37,13 @@ def discs(figure: Figure) -> EllipseCollection:
 
 
 @pytest.fixture(scope="module")
-def sticky() -> Labelled:
+def sticky() -> ResultView:
     return result(asperities=asperities())
 
 
 @pytest.mark.parametrize("step", [None, 3, 9])
 @pytest.mark.parametrize("realization", [0, 1])
-def test_the_drawn_forces_are_those_of_the_result(sticky: Labelled, step: int | None, realization: int) -> None:
+def test_the_drawn_forces_are_those_of_the_result(sticky: ResultView, step: int | None, realization: int) -> None:
     contacts = discs(draw_map(sticky, realization=realization, step=step))
     force = sticky.variables["force"].values[realization]
     drawn = np.asarray(contacts.get_array())
@@ -53,7 +53,7 @@ def test_the_drawn_forces_are_those_of_the_result(sticky: Labelled, step: int | 
     assert drawn.size == sticky.variables["contact_count"].values[realization, 5 if step is None else step]
 
 
-def test_contacts_are_drawn_to_scale(sticky: Labelled) -> None:
+def test_contacts_are_drawn_to_scale(sticky: ResultView) -> None:
     figure = draw_map(sticky)
     figure.draw_without_rendering()
     contacts, now = discs(figure), Snapshot.of(sticky, None, placed=True)
@@ -66,7 +66,7 @@ def test_contacts_are_drawn_to_scale(sticky: Labelled) -> None:
     assert path[0, 0] == pytest.approx(drawn[-1], rel=1e-12)  # of a circle of radius 1, in units of the axes
 
 
-def test_contacts_lie_where_the_asperities_are(sticky: Labelled) -> None:
+def test_contacts_lie_where_the_asperities_are(sticky: ResultView) -> None:
     table = asperities(placement="random")
     ensemble = rm.generate(table, seed=7, realization=1)
     at = np.asarray(discs(draw_map(sticky, realization=1)).get_offsets())
@@ -109,7 +109,7 @@ def test_cells_of_a_sweep_are_told_apart() -> None:
         ({"cell": (0,)}, r"cell is \(0,\)"),
     ],
 )
-def test_other_places_are_refused(sticky: Labelled, where: dict[str, Any], message: str) -> None:
+def test_other_places_are_refused(sticky: ResultView, where: dict[str, Any], message: str) -> None:
     with pytest.raises(StoreError, match=message):
         draw_map(sticky, **where)
 
@@ -119,9 +119,8 @@ def test_an_expected_law_has_no_asperities() -> None:
         draw_map(result(batch={"estimator": "expected"}, asperities=asperities()))
 
 
-def test_other_asperities_than_those_of_the_result_are_refused(sticky: Labelled) -> None:
-    force = sticky.variables["force"]
-    other = sticky._replace(variables=sticky.variables | {"force": force._replace(values=1.01 * force.values)})
+def test_other_asperities_than_those_of_the_result_are_refused(sticky: ResultView) -> None:
+    other = ResultView(sticky.dataset.assign(force=1.01 * sticky.dataset.force))
     with pytest.raises(StoreError, match="run the scene again"):
         draw_map(other)
 
@@ -160,7 +159,7 @@ def test_a_height_map_lies_below_its_contacts(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("kind", [large("png"), "svg", large("pdf")])
-def test_a_map_is_written_alike_each_time(sticky: Labelled, tmp_path: Path, kind: str) -> None:
+def test_a_map_is_written_alike_each_time(sticky: ResultView, tmp_path: Path, kind: str) -> None:
     written = []
     for name in ("one", "two"):
         save(draw_map(sticky), tmp_path / f"{name}.{kind}")
@@ -179,7 +178,7 @@ def test_a_result_by_boundary_elements_is_said_to_be_one() -> None:
     assert "by boundary elements" in Snapshot.of(found, None, placed=True).place
 
 
-def test_the_step_of_the_pull_off(sticky: Labelled) -> None:
+def test_the_step_of_the_pull_off(sticky: ResultView) -> None:
     way = {"start": "clear", "stop": "0.5 sigma", "steps": 40}
     made = rm.run(scene(asperities=asperities(), batch={"realizations": 2}, path={"separation": way, "unload": True}))
     for realization in (0, 1):
@@ -194,9 +193,7 @@ def test_the_step_of_the_pull_off(sticky: Labelled) -> None:
         rm.plot(up_and_no_further, kind="map", step="pull-off")
 
 
-def test_a_step_without_an_equilibrium_is_passed_over(sticky: Labelled) -> None:
-    force = sticky.variables["force"]
-    values = force.values.copy()
-    values[0, 5:7] = np.nan  # the closest approach, which the unloading repeats
-    changed = sticky._replace(variables=sticky.variables | {"force": force._replace(values=values)})
-    assert "step 4 of 12" in draw_map(changed).get_suptitle().replace("\n", " ")
+def test_a_step_without_an_equilibrium_is_passed_over(sticky: ResultView) -> None:
+    changed = sticky.dataset.copy(deep=True)
+    changed.force[0, 5:7] = np.nan  # the closest approach, which the unloading repeats
+    assert "step 4 of 12" in draw_map(ResultView(changed)).get_suptitle().replace("\n", " ")

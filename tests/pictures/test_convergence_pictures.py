@@ -15,13 +15,13 @@ from roughmdr.errors import StoreError
 from roughmdr.numerics.arguments import Floats
 from roughmdr.pictures.convergence import draw_convergence
 from roughmdr.pictures.style import save
-from roughmdr.storage.labelled import Labelled
+from roughmdr.result.view import ResultView
 
 
-def result(**changes: Any) -> Labelled:
+def result(**changes: Any) -> ResultView:
     path = {"separation": {"start": "5 um", "stop": "0.5 sigma", "steps": 6}, "unload": True}
     asperities = scene()["asperities"] | {"count": 200}
-    return Labelled.of(rm.run(scene(**{"path": path, "asperities": asperities} | changes)))
+    return ResultView(rm.run(scene(**{"path": path, "asperities": asperities} | changes)))
 
 
 def curve(ax: Axes, number: int) -> tuple[Floats, Floats]:
@@ -31,11 +31,11 @@ def curve(ax: Axes, number: int) -> tuple[Floats, Floats]:
 
 
 @pytest.fixture(scope="module")
-def sixteen() -> Labelled:
+def sixteen() -> ResultView:
     return result()
 
 
-def test_the_running_error_is_that_of_numpy(sixteen: Labelled) -> None:
+def test_the_running_error_is_that_of_numpy(sixteen: ResultView) -> None:
     figure = draw_convergence(sixteen)
     force = sixteen.variables["force"].values
     largest = force[:, int(np.abs(force.mean(axis=0)).argmax())]
@@ -50,14 +50,14 @@ def test_the_running_error_is_that_of_numpy(sixteen: Labelled) -> None:
             assert error == pytest.approx(expected, rel=1e-13)
 
 
-def test_the_last_error_is_on_the_line_of_the_square_root(sixteen: Labelled) -> None:
+def test_the_last_error_is_on_the_line_of_the_square_root(sixteen: ResultView) -> None:
     ax = draw_convergence(sixteen).axes[0]
     n, line = curve(ax, 1)
     assert line[0] * math.sqrt(2.0 / 16.0) == pytest.approx(curve(ax, 0)[1][-1], rel=1e-12)
     assert line[0] * math.sqrt(n[0]) == pytest.approx(line[1] * math.sqrt(n[1]))
 
 
-def test_the_note_says_how_many_realisations_an_error_takes(sixteen: Labelled) -> None:
+def test_the_note_says_how_many_realisations_an_error_takes(sixteen: ResultView) -> None:
     force = sixteen.variables["force"].values
     largest = force[:, int(np.abs(force.mean(axis=0)).argmax())]
     needed = float(f"{(100.0 * np.std(largest, ddof=1) / largest.mean()) ** 2:.1e}")
@@ -112,7 +112,7 @@ def test_results_without_realisations_are_refused(changes: dict[str, Any], messa
 
 @pytest.mark.large
 @pytest.mark.parametrize("kind", [large("png"), "svg", large("pdf")])
-def test_convergence_is_written_alike_each_time(sixteen: Labelled, tmp_path: Path, kind: str) -> None:
+def test_convergence_is_written_alike_each_time(sixteen: ResultView, tmp_path: Path, kind: str) -> None:
     written = []
     for name in ("one", "two"):
         save(draw_convergence(sixteen), tmp_path / f"{name}.{kind}")
@@ -136,7 +136,7 @@ def test_lines_of_cells_are_seen_on_a_dark_ground() -> None:
         assert all(sum(to_rgb(each)) > 1.0 for each in colours(5))
 
 
-def test_the_numbers_of_many_realisations_do_not_overlap(sixteen: Labelled) -> None:
-    many = Labelled.of(sixteen.to_xarray().isel(realization=np.arange(8000) % 16))
+def test_the_numbers_of_many_realisations_do_not_overlap(sixteen: ResultView) -> None:
+    many = ResultView(sixteen.dataset.isel(realization=np.arange(8000) % 16))
     ax = draw_convergence(many).axes[0]
     assert [each for each in ax.get_xticks() if 2.0 <= each <= 16000.0] == [10.0, 100.0, 1000.0, 10000.0]

@@ -14,7 +14,7 @@ import roughmdr as rm
 from roughmdr.cli import main
 from roughmdr.pictures.curves import Quantity, curves_of
 from roughmdr.pictures.style import BRANCH_COLOURS
-from roughmdr.storage.labelled import Labelled
+from roughmdr.result.view import ResultView
 
 FEW = {**ASPERITIES, "count": 100}
 CLEAR = {"separation": {"start": "clear", "stop": {"contact_fraction": 0.02}, "steps": 40}, "unload": True}
@@ -225,7 +225,7 @@ def test_a_picture_loads_no_more_numbers_than_it_draws_and_the_command_makes_it(
 def test_paths_of_machines_are_drawn(path: dict[str, Any]) -> None:
     made = rm.run(scene(asperities=FEW, batch={"realizations": 4}, path=path))
     assert_legible(rm.plot(made))
-    assert Labelled.of(made).sizes["step"] in (40, 41)
+    assert ResultView(made).sizes["step"] in (40, 41)
 
 
 def test_a_path_that_turns_without_a_repeated_step_is_drawn_whole() -> None:
@@ -287,7 +287,7 @@ def test_the_band_of_the_model_error_is_over_the_largest_force_where_the_error_i
             output={"variables": ["force", "model_error_curve"], "keep": keep}, batch={"realizations": 1},
         )
     )  # fmt: skip
-    result = Labelled.of(made)
+    result = ResultView(made)
     curves = list(curves_of(result, Quantity.of(result, "force"), Quantity.of(result, "separation")))
     error = made.model_error_curve if keep == "curves" else made.model_error_curve_mean
     down, back, error = curves[0].model_error, curves[-1], error.values.ravel()

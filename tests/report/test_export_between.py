@@ -18,7 +18,7 @@ from roughmdr.report.export.law import QUANTITIES, law_of
 from roughmdr.report.export.table import table_of
 from roughmdr.report.export.thin import RELATIVE_FROM
 from roughmdr.result.between import CONFIDENCE
-from roughmdr.storage.labelled import Labelled
+from roughmdr.result.view import ResultView
 
 TIMES = 8
 
@@ -55,7 +55,7 @@ def coarser(fine: xr.Dataset) -> xr.Dataset:
 def ratio(fine: xr.Dataset, quantity: str, branch: str) -> float | None:
     """The largest error of a table against the finer path over the smallest one that can be asked for; None if none."""
     asked = QUANTITIES[quantity]
-    law, exact = (law_of(Labelled.of(each), asked, branch) for each in (coarser(fine), fine))
+    law, exact = (law_of(ResultView(each), asked, branch) for each in (coarser(fine), fine))
     for error in np.geomspace(5e-4, 0.1, 47):
         try:
             table = table_of(law, asked, branch, error=error, with_tension=True)

@@ -15,7 +15,7 @@ import roughmdr as rm
 from roughmdr.batch.known_moments import KnownMoments
 from roughmdr.batch.moments import MomentTree
 from roughmdr.report.summary import describe_result
-from roughmdr.storage.labelled import Labelled
+from roughmdr.result.view import ResultView
 from roughmdr.variables import CONDUCTANCES, CURVE_VARIABLES
 
 VARIABLES = CURVE_VARIABLES | CONDUCTANCES
@@ -125,26 +125,26 @@ def test_unloadings_that_end_in_contact_do_not_enter(keep: str) -> None:
     assert int(found.pull_off_count) == 16 - int(ends.sum())
     if keep == "curves":
         np.testing.assert_array_equal(found.pull_off_force.isnull(), ends)
-    text = describe_result(Labelled.of(found))
+    text = describe_result(ResultView(found))
     assert f"{int(ends.sum())} of 16 unloadings end in contact and have none" in text
     pressed = kept(keep, path={"separation": ["3 um", "0 um", "0.1 um"]})
     assert int(pressed.pull_off_count) == 0
     assert np.isnan(pressed.pull_off_force_of_mean)
-    assert "none: all 16 unloadings end in contact" in describe_result(Labelled.of(pressed))
+    assert "none: all 16 unloadings end in contact" in describe_result(ResultView(pressed))
 
 
 def test_after_a_preload_nothing_is_said_of_a_mean_law() -> None:
     """At equal travel realisations stand at different separations."""
     found = kept("curves", path={"preload": "1 mN", "steps": 10, "unload": True})
     assert int(found.pull_off_count) == 16
-    assert "mean law" not in describe_result(Labelled.of(found))
-    assert "mean law" in describe_result(Labelled.of(kept("curves", path={"separation": ["3 um", "0 um", "9 um"]})))
+    assert "mean law" not in describe_result(ResultView(found))
+    assert "mean law" in describe_result(ResultView(kept("curves", path={"separation": ["3 um", "0 um", "9 um"]})))
 
 
 def test_a_path_without_unloading_has_no_pull_off() -> None:
     found = kept("curves", path={"separation": ["3 um", "0 um"]})
     assert not [name for name in found if str(name).startswith("pull_off")]
-    assert "none: the path has no unloading" in describe_result(Labelled.of(found))
+    assert "none: the path has no unloading" in describe_result(ResultView(found))
 
 
 def test_it_is_there_where_the_force_is_not_asked_for() -> None:
@@ -213,5 +213,5 @@ def test_curves_statistics_and_the_expected_law_give_one_pull_off_of_a_sticky_fi
     few = rm.run({**STICKY, "asperities": rough, "path": path})
     assert float(few.pull_off_contacts.mean()) < 3.0
     said = "contacts carry it: a patch this small does not show the pull-off of a surface"
-    assert said in describe_result(Labelled.of(few))
-    assert said not in describe_result(Labelled.of(curves))
+    assert said in describe_result(ResultView(few))
+    assert said not in describe_result(ResultView(curves))

@@ -25,6 +25,7 @@ from roughmdr.report.export.write import Export, document_of
 from roughmdr.report.info import describe
 from roughmdr.report.page import error_rows
 from roughmdr.report.result_document import result_table
+from roughmdr.result.view import ResultView
 from roughmdr.storage.labelled import Array, Labelled
 from roughmdr.storage.result_form import forms_of
 from roughmdr.storage.result_validation import as_result
@@ -65,7 +66,7 @@ LARGE = {
 }
 OTHER_VALUES = (None, 5, "text")
 NUMBERS = (np.nan, np.inf, -1.0, 0.0, 1e300)
-READERS: dict[str, Callable[[Labelled], object]] = {
+READERS: dict[str, Callable[[ResultView], object]] = {
     "info": lambda data: describe(data, None, cells=False),
     "cells": lambda data: describe(data, None, cells=True),
     "json": lambda data: bool(result_table(data, None)),
@@ -118,7 +119,7 @@ def _others(array: Array) -> Iterator[tuple[str, Array]]:
         yield f"all {number}", array._replace(values=np.full_like(values, number))
 
 
-def read(data: Labelled, of: Callable[[Labelled], Labelled], readers: dict[str, Callable[[Labelled], object]]) -> None:
+def read(data: Labelled, of: Callable[[Labelled], Labelled], readers: dict[str, Callable[[Any], object]]) -> None:
     """Whatever is accepted is told by every reader, or refused in words, without a number that is none."""
     for change, altered in alterations(data):
         try:
@@ -140,7 +141,8 @@ def read(data: Labelled, of: Callable[[Labelled], Labelled], readers: dict[str, 
 def test_every_array_and_attribute_in_turn(name: str) -> None:
     data = made(name)
     assert as_result(data) == data
-    read(data, as_result, READERS)
+    readers = {name: lambda accepted, reader=reader: reader(ResultView(accepted)) for name, reader in READERS.items()}
+    read(data, as_result, readers)
 
 
 @pytest.fixture(scope="module")

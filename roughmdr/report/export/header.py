@@ -3,8 +3,6 @@
 import math
 from collections.abc import Iterator
 
-import numpy as np
-
 from roughmdr.report.conduction import conduction_lines
 from roughmdr.report.contact_pressure import contact_pressure_lines
 from roughmdr.report.export.law import Quantity, Source
@@ -12,13 +10,12 @@ from roughmdr.report.export.table import Table
 from roughmdr.report.export.thin import RELATIVE_FROM
 from roughmdr.report.export.units import UnitSystem
 from roughmdr.result.between import CONFIDENCE
-from roughmdr.result.layout import estimator_of, realizations_of
 from roughmdr.result.trust import trust_of_result
-from roughmdr.storage.labelled import Labelled
+from roughmdr.result.view import ResultView
 from roughmdr.variables import CONDUCTANCES, TIME
 
 
-def origin_lines(cell: Labelled, words: str) -> Iterator[tuple[str, str]]:
+def origin_lines(cell: ResultView, words: str) -> Iterator[tuple[str, str]]:
     """Yield the scene, the swept values in ``words``, the key of the cell and the version of a result of one cell."""
     yield "scene", cell.attrs["title"]
     if words:
@@ -29,11 +26,11 @@ def origin_lines(cell: Labelled, words: str) -> Iterator[tuple[str, str]]:
 
 
 def table_lines(
-    cell: Labelled, table: Table, quantity: Quantity, source: Source, units: UnitSystem
+    cell: ResultView, table: Table, quantity: Quantity, source: Source, units: UnitSystem
 ) -> Iterator[tuple[str, str]]:
     """Yield what the numbers of a table are, and their errors."""
-    runs = realizations_of(cell)
-    yield "law", "expected law" if estimator_of(cell) == "expected" else f"mean of {runs} realisation{'s' * (runs > 1)}"
+    runs = cell.realizations
+    yield "law", "expected law" if cell.estimator == "expected" else f"mean of {runs} realisation{'s' * (runs > 1)}"
     yield "branch", table.law.rule
     variable, unit = source.variable, units.of(source.dimension).name
     per_area = "" if variable in ("pressure", "contact_fraction") else " per nominal area"
@@ -60,9 +57,8 @@ def table_lines(
             "statistical error",
             f"of the mean up to {table.statistical_error:.2g} of the largest value",
         )
-    numerical = float(np.fmax.reduce(cell.variables["numerical_error"].values, axis=None))
-    if math.isfinite(numerical):
-        yield "numerical error", f"force within {numerical:.2g} of the largest"
+    if cell.known("numerical_error").size:
+        yield "numerical error", f"force within {cell.largest('numerical_error'):.2g} of the largest"
     if table.departure > 0.0:
         departure = f"{table.departure / pressure.size:.3g} {pressure.name}"
         yield "departure", f"up to {departure} at steps that a load jumps over"
@@ -76,7 +72,7 @@ def table_lines(
         yield "warning", "; ".join(table.warnings)
 
 
-def model_lines(cell: Labelled) -> Iterator[tuple[str, str]]:
+def model_lines(cell: ResultView) -> Iterator[tuple[str, str]]:
     """Yield the error of the model and up to where it holds, a line for each name."""
     texts: dict[str, list[str]] = {}
     name = ""

@@ -6,9 +6,7 @@ import numpy as np
 
 from roughmdr.errors import StoreError
 from roughmdr.numerics.arguments import Floats, Ints
-from roughmdr.result.layout import cells_of, control_of, estimator_of, realizations_of, swept_sizes
-from roughmdr.result.means import holds, mean_of
-from roughmdr.storage.labelled import Labelled
+from roughmdr.result.view import Leg, ResultView
 from roughmdr.variables import SEPARATION
 
 
@@ -68,32 +66,31 @@ class Law(NamedTuple):
     """The scene of the result, in TOML."""
 
 
-def law_of(cell: Labelled, quantity: Quantity, branch: str) -> Law:
+def law_of(cell: ResultView, quantity: Quantity, branch: str) -> Law:
     """Return the mean law of a result of one cell along its loading or unloading that comes closest.
 
     StoreError where the result has more cells, no such branch, another coordinate than the separation, or lacks a
     variable.
     """
-    if len(cells_of(cell)) > 1:
-        listed = ", ".join(f"{name} ({size})" for name, size in swept_sizes(cell).items())
-        raise StoreError(f"the result has {len(cells_of(cell))} cells, over {listed}: select one of each")
-    if control_of(cell) != SEPARATION.name:
+    if len(cell.cells) > 1:
+        listed = ", ".join(f"{name} ({size})" for name, size in cell.sweep.items())
+        raise StoreError(f"the result has {len(cell.cells)} cells, over {listed}: select one of each")
+    if cell.control != SEPARATION.name:
         raise StoreError(
-            f"the path of the result is over {control_of(cell)}: a table needs the mean law over the separation; run "
+            f"the path of the result is over {cell.control}: a table needs the mean law over the separation; run "
             "the scene with path.separation"
         )
     separation = cell.coordinates[SEPARATION.name].values.reshape(-1)
-    steps = _leg(separation, cell.coordinates["branch"].values, branch)
+    steps = _steps(cell.legs, separation, branch)
     pressure, _, _ = _mean(cell, _PRESSURE, steps)
     value, error, source = _mean(cell, quantity, steps)
-    runs = 0 if estimator_of(cell) == "expected" else realizations_of(cell)
+    runs = 0 if cell.estimator == "expected" else cell.realizations
     return Law(source, separation[steps], pressure, value, error, runs, cell.attrs["scene"])
 
 
-def _leg(separation: Floats, branches: Ints, branch: str) -> Ints:
+def _steps(legs: list[Leg], separation: Floats, branch: str) -> Ints:
     """Return the steps of the loading or unloading that comes closest, from far to near."""
-    legs = np.split(np.arange(branches.size), np.flatnonzero(branches[1:] != branches[:-1]) + 1)
-    fitting = [leg for leg in legs if branches[leg[0]] == branch]
+    fitting = [leg.steps for leg in legs if leg.branch == branch]
     if not fitting:
         raise StoreError(f"branch is {branch!r}, and the path of the result has none")
     leg = min(fitting, key=lambda steps: float(separation[steps].min()))
@@ -104,9 +101,9 @@ def _leg(separation: Floats, branches: Ints, branch: str) -> Ints:
     return moves
 
 
-def _mean(cell: Labelled, quantity: Quantity, steps: Ints) -> tuple[Floats, Floats, Source]:
+def _mean(cell: ResultView, quantity: Quantity, steps: Ints) -> tuple[Floats, Floats, Source]:
     """Return the mean of a quantity at steps, its standard error, and what it is made from."""
-    source = next((source for source in quantity.sources if holds(cell, source.variable)), None)
+    source = next((source for source in quantity.sources if cell.holds(source.variable)), None)
     if source is None:
         names = " or ".join(repr(source.variable) for source in quantity.sources)
         raise StoreError(f"quantity {quantity.name!r} needs the variable {names}: add it to [output] variables")
@@ -118,7 +115,7 @@ def _mean(cell: Labelled, quantity: Quantity, steps: Ints) -> tuple[Floats, Floa
         area = float(cell.variables["nominal_area"].values.item())
         if not 0.0 < area < np.inf:
             raise StoreError(f"nominal_area is {area:g} m2; per area there is nothing")
-    mean, error = (numbers.reshape(-1)[steps] / area for numbers in mean_of(cell, source.variable))
+    mean, error = (numbers.reshape(-1)[steps] / area for numbers in cell.mean(source.variable))
     if not np.isfinite(mean).all():
         raise StoreError(f"{source.variable} is not known at all steps: no run of this cell was computed")
     return mean, error, source

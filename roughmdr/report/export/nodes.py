@@ -9,15 +9,14 @@ from roughmdr.pictures.overlay import plan_of_result
 from roughmdr.report.export.document import Column, Document
 from roughmdr.report.export.header import model_lines, origin_lines
 from roughmdr.report.export.units import UnitSystem
-from roughmdr.result.layout import cells_of
 from roughmdr.result.select import cell_of, select
+from roughmdr.result.view import ResultView
 from roughmdr.scene import Scene
 from roughmdr.shapes import SHAPES
-from roughmdr.storage.labelled import Labelled
 
 
 def nodes_document(
-    result: Labelled, file: Path | None, chosen: Mapping[str, object], error: float, units: UnitSystem
+    result: ResultView, file: Path | None, chosen: Mapping[str, object], error: float, units: UnitSystem
 ) -> Document:
     """Return the nodes whose sum is the expected law of a cell within ``error``, as few as are found.
 
@@ -25,9 +24,9 @@ def nodes_document(
     do not have it to that error.
     """
     cell, words = select(result, chosen)
-    if (count := len(cells_of(cell))) > 1:
+    if (count := len(cell.cells)) > 1:
         raise StoreError(f"the result has {count} cells: select one")
-    planned = plan_of_result(file, result).cells[cells_of(result).index(cell_of(result, chosen))]
+    planned = plan_of_result(file, result).cells[result.cells.index(cell_of(result, chosen))]
     scene = planned.scene
     if reason := scene.reason_against("expected"):
         raise StoreError(f"quantity 'nodes' is of the expected law, which there is none of: {reason}")

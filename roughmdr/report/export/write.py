@@ -16,15 +16,13 @@ from roughmdr.report.export.law import QUANTITIES, Quantity, law_of
 from roughmdr.report.export.table import MOST_ERROR, Table, table_of
 from roughmdr.report.export.units import UnitSystem
 from roughmdr.result.given import given_result
-from roughmdr.result.layout import swept_sizes, swept_values
 from roughmdr.result.select import cell_of, select
+from roughmdr.result.view import ResultView
 from roughmdr.schema.keywords import with_options
-from roughmdr.schema.toml_text import parse_toml
 from roughmdr.schema.units import DIMENSIONLESS
 from roughmdr.schema.units import quantity as number_in_si
 from roughmdr.schema.wording import short_repr, suggestion
 from roughmdr.storage.files import check_ending, check_writable, replace_atomically
-from roughmdr.storage.labelled import Labelled
 from roughmdr.storage.result_file import check_same_kind
 from roughmdr.variables import BRANCHES
 
@@ -130,7 +128,7 @@ def write(document: Document, path: Path, asked: Export) -> None:
         temporary.write_text(text, encoding="utf-8")
 
 
-def document_of(result: Labelled, file: Path | None, asked: Export) -> tuple[Document, tuple[str, ...]]:
+def document_of(result: ResultView, file: Path | None, asked: Export) -> tuple[Document, tuple[str, ...]]:
     """Return what is to be written of a result, which was read from ``file`` unless that is None, and warnings."""
     units = UnitSystem.read(asked.units)
     if asked.quantity == "nodes":
@@ -160,12 +158,12 @@ def document_of(result: Labelled, file: Path | None, asked: Export) -> tuple[Doc
     return document, table.warnings
 
 
-def _friction(result: Labelled, asked: Export) -> float | None:
+def _friction(result: ResultView, asked: Export) -> float | None:
     """Return the coefficient of friction of the scene in the cell that is selected; None where it has none."""
-    swept = swept_values(result.coordinates, list(swept_sizes(result)), cell_of(result, asked.select))
+    swept = result.swept(cell_of(result, asked.select))
     if "tangential_friction" in swept:
         return float(swept["tangential_friction"].values)
-    friction = parse_toml(result.attrs["scene"]).get("tangential", {}).get("friction")
+    friction = result.scene.get("tangential", {}).get("friction")
     return None if friction is None else number_in_si(friction, DIMENSIONLESS)
 
 
