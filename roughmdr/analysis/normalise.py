@@ -105,8 +105,8 @@ def _scale_of(name: str) -> _Factors | None:
 
 def _checked(scene: Scene) -> Scene:
     shape = scene.asperities.shape_name
-    if scene.nominal is not None:
-        raise StoreError("normalise needs a flat that presses all asperities alike; this scene has [nominal]")
+    if body := next((stage.key for stage in scene.stages if not stage.flat), ""):
+        raise StoreError(f"normalise needs a flat that presses all asperities alike; this scene has [{body}]")
     if shape != "paraboloid":
         raise StoreError(f"normalise needs paraboloids, which have a radius; the asperities of this scene are {shape}s")
     return scene

@@ -10,12 +10,11 @@ from typing import NamedTuple
 import numpy as np
 
 from roughmdr.aggregate import LoadingPath
-from roughmdr.batch.costs import along_seconds, law_seconds, reference_bytes, reference_seconds
+from roughmdr.batch.costs import along_seconds, beside, law_seconds
 from roughmdr.batch.plan import Cell
 from roughmdr.batch.realization import simulate_ensemble, simulate_realization
 from roughmdr.ensemble import Ensemble
-from roughmdr.layer.tangential import Path
-from roughmdr.loading.lateral import LateralPath
+from roughmdr.loading.lateral import LateralPath, Path
 from roughmdr.scene import Scene
 
 _PARTS = (
@@ -54,19 +53,20 @@ def measure(cell: Cell, estimator: str, variables: list[str], budget: float) -> 
     """Return the cost of one run of a cell, in about ``budget`` seconds; at least a small part is run.
 
     An expected law that cannot be had in that time even at a few steps is not run: its cost is that of ``costs``, as is
-    that of a reference. RoughmdrError where the cell cannot be computed.
+    that of what stages compute beside a law. RoughmdrError where the cell cannot be computed.
     """
     cost = _measure_law(cell, estimator, variables, budget)  # along separations
     law = cost.seconds * law_seconds(cell, estimator) / along_seconds(cell, estimator)
-    return cost._replace(seconds=law + reference_seconds(cell), memory=cost.memory + reference_bytes(cell))
+    more = beside(cell)
+    return cost._replace(seconds=law + more.seconds, memory=cost.memory + more.memory)
 
 
 def _measure_law(cell: Cell, estimator: str, variables: list[str], budget: float) -> Cost:
-    """Return the cost of the law of one run of a cell: of a viscoelastic one as that of the elastic one tells."""
-    if cell.scene.viscoelastic is not None:
-        elastic = cell._replace(scene=cell.scene.model_copy(update={"viscoelastic": None}))
-        cost = _measure_law(elastic, estimator, variables, budget)
-        more = along_seconds(cell, estimator) / along_seconds(elastic, estimator)
+    """Return the cost of the law of one run of a cell: where it needs more separations, as that without them tells."""
+    if longer := [stage.key for stage in cell.scene.stages if stage.more_separations]:
+        plain = cell._replace(scene=cell.scene.model_copy(update=dict.fromkeys(longer)))
+        cost = _measure_law(plain, estimator, variables, budget)
+        more = along_seconds(cell, estimator) / along_seconds(plain, estimator)
         return cost._replace(seconds=cost.seconds * more)
     if estimator == "expected" or cell.scene.needs_positions:
         return _in_proportion(cell, estimator, variables, budget)

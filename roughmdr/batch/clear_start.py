@@ -9,7 +9,6 @@ what is drawn nor on how many of these realisations there are.
 import math
 
 from roughmdr.aggregate.detachment import clear_separation
-from roughmdr.asperity.contact import Contact
 from roughmdr.errors import Fault, SceneError
 from roughmdr.scene import Scene
 from roughmdr.scene.separation import CLEAR
@@ -27,8 +26,7 @@ def clear_start(scene: Scene) -> float:
     start = _exceeded(scene, -math.expm1(math.log1p(-_CHANCE) / (count * max(_REALIZATIONS, most))))
     if not math.isfinite(start):
         raise _fault("cannot be found: no float holds the contact of asperities as extreme as there may be")
-    if scene.nominal is not None and scene.work > 0.0:  # the half-space, too, is drawn up before it detaches
-        start += Contact.of(scene.nominal.body, scene.effective_modulus, scene.adhesion_model).depth[0]
+    start += sum((stage.clear_above(scene) for stage in scene.stages), start=0.0)
     if scene.asperities.is_random:
         usual = _exceeded(scene, min(_USUAL_CHANCE, 1.0 / count))
         middle = float(scene.asperities.extremes(0.5).height.max())

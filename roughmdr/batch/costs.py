@@ -9,7 +9,6 @@ from typing import NamedTuple
 import numpy as np
 
 from roughmdr.batch.plan import Cell, Plan
-from roughmdr.elements.refine import LARGEST_GRID, first_points
 from roughmdr.kernels.adhesion import Adhesion
 from roughmdr.loading.machine import legs_of
 from roughmdr.scene import Scene
@@ -43,9 +42,6 @@ _ELASTIC, _JKR, _DUGDALE = (
     _Law(1.5e-2, 1e-4, 5e-2, 2e-4),
 )
 _PARABOLOIDS, _HEIGHTS_DEPEND = 0.3, 6.0  # times as long for a node
-_REMEMBERED = 5000  # separations that a viscoelastic law is integrated over, of kinked curves
-# Under a curved body: tables of each node, a step on all its rings, and with adhesion each node of the first rule.
-_CURVED_TABLES, _CURVED_STEP, _CURVED_NODE = 5e-2, 1.5e-2, 5e-2
 _SOUGHT, _SOUGHT_PAIRS, _SOUGHT_ADHERING = 2.5, 17.0, 3.6
 """How many times as long a path takes whose separations are sought: 2.3 to 2.8 (2000 and 20 000 paraboloids), 14 to 20
 (100 to 1600 in pairs, under a pressure), 3.6 (median of 150 ensembles of 2 to 8 adhesive pairs)."""
@@ -60,8 +56,6 @@ _PAIRWISE_BEGIN, _PAIRWISE_STEP, _PAIRWISE_VISIT = 5e-2, 5e-3, 1.5e-5
 # With adhesion: a step of the path, and each contact that is made and lost, the longer the more asperities there are.
 _ADHERING_STEP, _ADHERING, _ADHERING_SQUARE = 1.1e-3, 3.7e-3, 7.5e-9
 _GRID_STEP = 1.2  # of boundary elements, should they be needed
-_REFERENCE_STEP, _REFERENCE_POINT = 5e-3, 3e-6  # of a reference: a separation, and a point there on all its grids
-_ALONE, _REFERENCE_BYTES = 4.0, 160  # so many times more points around a surface that stands alone; bytes of a point
 _FIND_HILL = 2e-3  # of a hill, where each realisation has a map of its own
 _NUMBER = 8  # bytes
 _ASPERITY = 100  # bytes of an asperity: of a paraboloid, drawn and summed with JKR, 86 to 97 were measured
@@ -71,8 +65,8 @@ _BRANCH, _STEP_IN_FILE = 36, 68  # bytes: the name of the branch of a step in me
 
 
 def seconds(cell: Cell, estimator: str) -> float:
-    """Return about how long one run takes [s], with its reference."""
-    return law_seconds(cell, estimator) + reference_seconds(cell)
+    """Return about how long one run takes [s], with what stages compute beside its law."""
+    return law_seconds(cell, estimator) + beside(cell).seconds
 
 
 def law_seconds(cell: Cell, estimator: str) -> float:
@@ -88,8 +82,7 @@ def along_seconds(cell: Cell, estimator: str) -> float:
         steps = np.unique(cell.lateral.memory.amplitude).size
     if cell.scene.interaction is not None and not cell.scene.needs_positions:
         steps *= _MEAN_FIELD_PASSES
-    if cell.scene.viscoelastic is not None:
-        steps += _REMEMBERED
+    steps += sum(stage.more_separations for stage in cell.scene.stages)
     if estimator == "expected":
         return _expected_seconds(cell.scene, steps)
     begin = _RUN + (_STRATIFY if estimator == "stratified" else 0.0)
@@ -148,8 +141,9 @@ def _expected_seconds(scene: Scene, steps: int) -> float:
     """Return about how long an expected law takes [s]."""
     section, adhesion = scene.asperities, scene.adhesion_model
     nodes = section.node_count(_FIRST_RULE)
-    if scene.nominal is not None:
-        return _CURVED_TABLES * nodes + steps * (_CURVED_STEP + (_CURVED_NODE * nodes if adhesion.work else 0.0))
+    for stage in scene.stages:
+        if (own := stage.expected_seconds(nodes, steps, adhering=adhesion.work > 0.0)) is not None:
+            return own
     law = (_DUGDALE if "dugdale" in adhesion.candidates else _JKR) if adhesion.work else _ELASTIC
     weight = nodes**_MORE_NODES if nodes > 1 else 0.0
     tables, each = law.node, law.node_step
@@ -174,28 +168,20 @@ def paired_seconds(cell: Cell) -> float:
     return _PAIRWISE_BEGIN + np.unique(cell.path.separation).size * each
 
 
-def reference_seconds(cell: Cell, *, finest: bool = False) -> float:
-    """Return about how long the reference of a realisation takes [s]; 0 where none is asked for.
+class Beside(NamedTuple):
+    """Time and memory of what stages compute beside the law of a realisation."""
 
-    That is on the grid it begins with, or on the ``finest``, which few and small contacts may need.
-    """
-    if cell.scene.reference is None:
-        return 0.0
-    points = _reference_points(cell, finest=finest)
-    return np.unique(cell.path.separation).size * (_REFERENCE_STEP + _REFERENCE_POINT * points)
+    seconds: float
+    """[s]"""
+    memory: float
+    """[byte]"""
 
 
-def reference_bytes(cell: Cell, *, finest: bool = False) -> float:
-    """Return the memory [byte] of the reference of a realisation, as ``reference_seconds``."""
-    return 0.0 if cell.scene.reference is None else _REFERENCE_BYTES * _reference_points(cell, finest=finest)
-
-
-def _reference_points(cell: Cell, *, finest: bool = False) -> float:
-    """Return the points of a grid of the error asked for, with those around a surface that stands alone."""
-    assert cell.scene.reference is not None
-    first = first_points(cell.scene.asperities.expected_count, cell.scene.reference.error)
-    points = LARGEST_GRID**2 if finest else first**2
-    return points if cell.scene.repeats else _ALONE * points
+def beside(cell: Cell, *, finest: bool = False) -> Beside:
+    """Return about what stages take beside the law of a realisation, on the grids they begin with or the ``finest``."""
+    separations = np.unique(cell.path.separation).size
+    own = [stage.beside(cell.scene, separations, finest=finest) for stage in cell.scene.stages]
+    return Beside(sum(time for time, _ in own), sum(memory for _, memory in own))
 
 
 def file_bytes(plan: Plan, runs: int) -> int:

@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from roughmdr.batch.calibrate import Cost, measure
-from roughmdr.batch.costs import START_UP, file_bytes, reference_bytes, reference_seconds, result_bytes, seconds
+from roughmdr.batch.costs import START_UP, beside, file_bytes, result_bytes, seconds
 from roughmdr.batch.plan import Plan
 from roughmdr.batch.rounds import Rounds
 from roughmdr.batch.tasks import BLOCK_SIZE, prepare_all, split_into_tasks
@@ -29,8 +29,8 @@ class Estimate(NamedTuple):
     runs: int
     tasks: int
     seconds: float  # in all
-    longest: float  # in all, should references need the finest grids; as ``seconds`` where there are none
-    finest: float  # bytes of the finest grids of references at a time; 0 where there are none
+    longest: float  # in all, should what is beside the law need the finest grids; as ``seconds`` where there are none
+    finest: float  # bytes of these grids at a time; 0 where there are none
     start_up: float  # until the first asperity is made
     memory: float  # peak, in all
     resident: float  # of Python and its packages; 0 where the system does not tell
@@ -66,7 +66,7 @@ def estimate(plan: Plan, workers: int, budget: float = BUDGET) -> Estimate:
     computing = correction * foreseen_total / busy
     whole = START_UP + computing + file / _DISK + _STEP_SECONDS * plan.steps
     finer = sum(
-        (each.last - each.first) * (reference_seconds(each.cell, finest=True) - reference_seconds(each.cell))
+        (each.last - each.first) * (beside(each.cell, finest=True).seconds - beside(each.cell).seconds)
         for each in first
     )
     return Estimate(
@@ -74,7 +74,7 @@ def estimate(plan: Plan, workers: int, budget: float = BUDGET) -> Estimate:
         tasks=tasks,
         seconds=whole,
         longest=whole + finer / busy,
-        finest=busy * max(reference_bytes(cell, finest=True) for cell in plan.cells),
+        finest=busy * max(beside(cell, finest=True).memory for cell in plan.cells),
         start_up=START_UP,
         memory=resident + memory + busy * max(cost.memory for cost in costs.values()),
         resident=resident,

@@ -14,12 +14,10 @@ from roughmdr.interaction import Interaction
 from roughmdr.interaction.placed import part_of
 from roughmdr.interaction.settings import reason_against_adhesion
 from roughmdr.scene import Scene
-from roughmdr.variables import NOMINAL_VARIABLES
 
 _MAX_ASPERITIES = 1000
 _MAX_STEPS = 60
 _MAX_PAIRED, _MAX_PAIRED_STEPS = 200, 12  # where asperities feel each other in pairs, which takes longer
-_MAX_CURVED_STEPS, _CURVED_ERROR = 8, 1e-2  # under a curved body, whose law takes longer still
 _MAX_CELLS, _MAX_CHECKED = 12, 100  # to foresee, to check before a run
 
 
@@ -45,8 +43,8 @@ class Prospect(NamedTuple):
     failures: tuple[str, ...]
     """Which of the cells that were tried cannot be computed, and why."""
     coupled_seconds: float
-    """About how long a realisation would take [s] if its asperities felt each other; inf where their adhesion, their
-    relaxation or a lateral path does not let them."""
+    """About how long a realisation would take [s] if its asperities felt each other; inf where their adhesion, another
+    law or a lateral path does not let them."""
     interaction: Interaction | None
     """How asperities feel each other."""
 
@@ -56,21 +54,20 @@ def foresee_cells(plan: Plan) -> Prospect:
     foreseen, failures = [], []
     for number in _some_cells(plan, _MAX_CELLS):
         cell = plan.cells[number]
-        separation, steps = cell.path.separation, _MAX_PAIRED_STEPS if cell.scene.needs_positions else _MAX_STEPS
-        steps = steps if cell.scene.nominal is None else _MAX_CURVED_STEPS
+        separation, most = cell.path.separation, _MAX_PAIRED_STEPS if cell.scene.needs_positions else _MAX_STEPS
+        steps = min([most, *(stage.most_foreseen for stage in cell.scene.stages)])
         if separation.size > steps:
             some = np.linspace(0, separation.size - 1, steps).astype(int)
             separation = separation[np.unique(np.append(some, np.argmin(separation)))]
         path = LoadingPath.along(separation, unload=False, adhesive=cell.scene.work > 0.0)
         try:
-            foresee = _foreseen if cell.scene.nominal is None else _foreseen_curved
+            foresee = _foreseen if cell.scene.flat else _foreseen_curved
             foreseen.append(foresee(cell.scene, path)._replace(cell=number))
         except RoughmdrError as error:
             failures.append(f"{plan.name_of(number, 0)}: {error}")
     coupled = max(
         math.inf
-        if cell.scene.viscoelastic is not None
-        or cell.scene.nominal is not None
+        if cell.scene.unlike
         or cell.lateral is not None
         or reason_against_adhesion(Interaction(), cell.scene.adhesion_model)
         else paired_seconds(cell)
@@ -135,6 +132,6 @@ def _foreseen(scene: Scene, path: LoadingPath) -> Foreseen:
 
 def _foreseen_curved(scene: Scene, path: LoadingPath) -> Foreseen:
     """Return the law of a curved body as few rings tell it."""
-    assert scene.nominal is not None
-    coarse = scene.model_copy(update={"nominal": scene.nominal.model_copy(update={"error": _CURVED_ERROR})})
-    return Foreseen(path, simulate_realization(coarse, path, 0, ["force", *NOMINAL_VARIABLES], "expected"), math.nan)
+    coarse = scene.model_copy(update={stage.key: stage.coarse() for stage in scene.stages})
+    names = ["force", *(name for stage in scene.stages for name in stage.more_variables(["force"]))]
+    return Foreseen(path, simulate_realization(coarse, path, 0, names, "expected"), math.nan)

@@ -9,21 +9,19 @@ from numpy.typing import NDArray
 
 from roughmdr.aggregate import LoadingPath
 from roughmdr.batch.path_ends import PathFinder
-from roughmdr.batch.reference import check_surface, reference_variables
 from roughmdr.batch.usual_path import machine_path, usual_path
-from roughmdr.batch.viscoelastic import check_path, time_of
 from roughmdr.errors import SceneError
 from roughmdr.interaction.placed import check_placed
-from roughmdr.layer.tangential import Path, neglected, unneeded
-from roughmdr.loading.lateral import LateralPath
+from roughmdr.loading.lateral import LateralPath, Path
 from roughmdr.loading.machine import FIXED_GRIPS, MachinePath, attributes_of
 from roughmdr.numerics.arguments import Floats
 from roughmdr.scene import Scene
 from roughmdr.scene.lateral import displacements
 from roughmdr.scene.sweep import describe_cell
 from roughmdr.schema.wording import count_by_cell
+from roughmdr.stages import STAGES
 from roughmdr.storage.labelled import Array
-from roughmdr.variables import CURVE_VARIABLES, LATERAL, NOMINAL_VARIABLES, OUTPUT_VARIABLES, TIME
+from roughmdr.variables import COORDINATES, LATERAL, OUTPUT_VARIABLES
 
 
 class Cell(NamedTuple):
@@ -118,9 +116,7 @@ class Plan(NamedTuple):
             return LateralPath.variables(asked)
         if machine is not None:
             return machine.variables(asked)
-        if self.scene.nominal is not None:
-            return [*asked, *NOMINAL_VARIABLES]
-        return asked if self.scene.reference is None else [*asked, *reference_variables(asked)]
+        return [*asked, *(name for stage in self.scene.stages for name in stage.more_variables(asked))]
 
     @property
     def warnings(self) -> list[str]:
@@ -129,10 +125,14 @@ class Plan(NamedTuple):
         return count_by_cell(of_cells, len(self.cells))
 
     @property
-    def slip_notes(self) -> list[str]:
-        """Lines on what the theory of slip neglects, with the number of cells where not in all."""
-        names = self.scene.output.variables
-        return count_by_cell((text for cell in self.cells for text in neglected(cell.scene, names)), len(self.cells))
+    def stage_notes(self) -> dict[str, list[str]]:
+        """Lines on what the theory of a stage neglects, by its ``noted``, with the number of cells where not in all."""
+
+        def lines(noted: str) -> Iterator[str]:
+            stages = ((cell.scene, stage) for cell in self.cells for stage in cell.scene.stages)
+            yield from (text for scene, stage in stages if stage.noted == noted for text in stage.notes(scene))
+
+        return {stage.noted: count_by_cell(lines(stage.noted), len(self.cells)) for stage in STAGES if stage.noted}
 
     @property
     def lattice_lines(self) -> list[str]:
@@ -153,8 +153,12 @@ class Plan(NamedTuple):
     def coordinates(self) -> dict[str, Array]:
         """Return the swept values and, over the steps, the controlled quantity, the branch and perhaps the time."""
         steps = {self.control: self._over_changing([cell.values for cell in self.cells], attributes_of(self.control))}
-        if self.scene.viscoelastic is not None:
-            steps["time"] = self._over_changing([time_of(cell.scene, cell.values) for cell in self.cells], TIME.attrs)
+        for number, stage in enumerate(self.scene.stages):
+            own = [cell.scene.stages[number].coordinates(cell.values) for cell in self.cells]
+            steps |= {
+                name: self._over_changing([each[name] for each in own], COORDINATES[name].attrs)
+                for name in stage.coordinates(self.cells[0].values)
+            }
         return {**self.scene.sweep.coordinates(), **steps, "branch": self.cells[0].controlled.branch()}
 
     def _over_changing(self, rows: list[Floats], attrs: dict[str, str]) -> Array:
@@ -200,8 +204,8 @@ def make_plan(scene: Scene) -> Plan:
 
 def _planned(cell: Scene, values: Floats, paths: dict[tuple[object, ...], LoadingPath]) -> Cell:
     """Return a cell with its path; those of separations are made once for equal ``values``."""
-    if cell.viscoelastic is not None:
-        check_path(cell, values)
+    for stage in cell.stages:
+        stage.check_path(values)
     if cell.path.lateral is not None:
         return _moved_sideways(cell, values[:1])
     if cell.path.control == "separation":
@@ -227,20 +231,14 @@ def _moved_sideways(cell: Scene, held: Floats) -> Cell:
 
 
 def _check_asperities_read(cell: Scene) -> None:
-    """SceneError where asperities that are read, not drawn, lack what their interaction or the reference needs."""
-    if cell.asperities.is_random or (cell.reference is None and cell.interaction_model is None):
+    """SceneError where asperities that are read, not drawn, lack what their interaction or a stage needs."""
+    if cell.asperities.is_random or not (cell.placed or cell.interaction_model):
         return
     ensemble = cell.asperities.ensemble(cell.seed, 0)
-    if cell.reference is not None:
-        check_surface(cell, ensemble)
+    for stage in cell.stages:
+        stage.check_read(cell, ensemble)
     if cell.interaction_model is not None:
         check_placed(ensemble, cell.interaction_model)
-
-
-def _without_section(scene: Scene) -> Iterator[str]:
-    """Yield what is left out because the scene has no section for it."""
-    parts = {"reference": "boundary elements", "conduction": "conductances", "nominal": "curvature of the bodies"}
-    yield from (f"{part}: the scene has no [{key}]" for key, part in parts.items() if getattr(scene, key) is None)
 
 
 def _left_out(scene: Scene) -> Iterator[str]:
@@ -254,22 +252,21 @@ def _left_out(scene: Scene) -> Iterator[str]:
         yield f"range of the adhesion: where JKR is off by less than {least}; adhesion_law tells where that is"
     elif scene.work > 0.0 and not scene.adhesion_model.cohesive:
         yield "range of the adhesion: adhesion.model is 'jkr'"
-    if scene.work == 0.0 and scene.viscoelastic is None:
-        yield "hysteresis: without adhesion a contact has no memory"
-        yield "time: elastic bodies do not relax; the scene has no [viscoelastic]"
     if scene.batch.estimator == "expected":
         yield "random draws: batch.estimator is 'expected'"
     if scene.accuracy is not None and scene.accuracy.method == "expected":
         yield "random draws: accuracy.method is 'expected'"
-    if scene.asperities.is_random and not scene.needs_positions and scene.reference is None:
+    if scene.asperities.is_random and not scene.placed:
         independent = "interaction.model is 'mean_field'" if scene.interaction else "asperities are independent"
         yield f"positions: {independent}; nothing depends on their positions"
     if scene.interaction is None:
         yield "interaction: asperities are independent; the scene has no [interaction]"
-    yield from _without_section(scene)
-    yield from unneeded(scene)
-    available = CURVE_VARIABLES if scene.tangential is None else OUTPUT_VARIABLES
-    if unasked := [name for name in available if name not in scene.output.variables]:
+    absent = list[str]()
+    for stage in STAGES:
+        section = scene.stage(stage)
+        yield from stage.left_out(scene, section)
+        absent += stage.own_variables if section is None else ()
+    if unasked := [name for name in OUTPUT_VARIABLES if name not in (*absent, *scene.output.variables)]:
         yield f"{', '.join(unasked)}: not among output.variables"
     if scene.output.keep == "statistics":
         yield "curves of the realisations: not stored, output.keep is 'statistics'"

@@ -1,45 +1,43 @@
 """One realisation of a cell: its asperities are drawn, or their density taken, and their law is computed."""
 
-from collections.abc import Callable
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
-from roughmdr.aggregate import LoadingPath, LoadSeparation, simulate
+from roughmdr.aggregate import LoadSeparation, simulate
 from roughmdr.ensemble import Ensemble
-from roughmdr.layer.conductance import of_contacts, with_conductances
-from roughmdr.layer.tangential import NormalLaw, Path, with_tangential
+from roughmdr.loading.lateral import LateralPath, Path
 from roughmdr.loading.machine import MachinePath
-from roughmdr.numerics.arguments import Floats
 from roughmdr.scene import Scene
-from roughmdr.variables import REFERENCE_VARIABLES
+from roughmdr.stages.stage import Contacts, Drawn
 
 _NEGLIGIBLE = 1e-16  # mean number of asperities above the highest summit of an expected law
 
 
-class _Contacts(NamedTuple):
-    """The elastic contacts of a rough layer."""
+def simulate_ensemble(
+    scene: Scene, path: Path, ensemble: Ensemble, variables: list[str], realization: int | None = None
+) -> LoadSeparation:
+    """Return the law of an ensemble with the material, adhesion, interaction and stages of a scene.
 
-    law: NormalLaw
-    highest: Callable[[], float]
-    """The height of the highest summit [m]; -inf where there is none."""
+    ``realization`` is its number where it is all that is drawn for it, so that stages may compute more beside it.
+    """
 
-
-def simulate_ensemble(scene: Scene, path: Path, ensemble: Ensemble, variables: list[str]) -> LoadSeparation:
-    """Return the load-separation curve of an ensemble with the material, adhesion and interaction of a scene."""
-
-    def law(path: LoadingPath | MachinePath, variables: list[str]) -> LoadSeparation:
+    def law(path: Path, names: list[str]) -> LoadSeparation:
+        assert not isinstance(path, LateralPath)  # which a stage resolves
         return simulate(
             ensemble,
             path,
             effective_modulus=scene.effective_modulus,
             adhesion=scene.adhesion_model,
             interaction=scene.interaction_model,
-            variables=variables,
+            variables=names,
         )
 
-    contacts = _Contacts(law, lambda: float(ensemble.height.max(initial=-np.inf)))
-    return _layered(scene, path, variables, contacts, ensemble.nominal_area)
+    def highest() -> float:
+        return float(ensemble.height.max(initial=-np.inf))
+
+    drawn = None if realization is None else Drawn(ensemble, realization)
+    return _staged(scene, path, variables, Contacts(law, highest, ensemble.nominal_area, drawn))
 
 
 def simulate_realization(
@@ -48,18 +46,10 @@ def simulate_realization(
     """Return the load-separation curve of one realisation of a scene without a sweep, by an estimator."""
     if estimator == "expected":
         return _expected(scene, path, variables)
-    placed = scene.needs_positions or scene.reference is not None
     ensemble = scene.asperities.ensemble(
-        scene.seed, realization, stratified=estimator == "stratified", with_positions=placed
+        scene.seed, realization, stratified=estimator == "stratified", with_positions=scene.placed
     )
-    if scene.reference is None:
-        return simulate_ensemble(scene, path, ensemble, variables)
-    from roughmdr.batch.reference import with_reference
-
-    assert isinstance(path, LoadingPath)  # as ``Scene`` validates
-    asked = [name for name in variables if name not in REFERENCE_VARIABLES]
-    law = simulate_ensemble(scene, path, ensemble, asked)
-    return with_reference(law, scene, path.separation, realization, ensemble).only(variables)
+    return simulate_ensemble(scene, path, ensemble, variables, realization)
 
 
 def _expected(scene: Scene, path: Path, variables: list[str]) -> LoadSeparation:
@@ -68,41 +58,26 @@ def _expected(scene: Scene, path: Path, variables: list[str]) -> LoadSeparation:
     from roughmdr.expected.under_machine import compute_under_machine
 
     source = scene.asperities
-    if scene.nominal is not None:
-        from roughmdr.layer import curved
-
-        assert isinstance(path, LoadingPath)  # as ``Scene`` validates
-        layer = curved.Layer(source, scene.effective_modulus, scene.adhesion_model)
-        return curved.compute(layer, scene.nominal.body, path, error=scene.nominal.error, variables=variables)
     given: dict[str, Any] = {
         "effective_modulus": scene.effective_modulus,
         "adhesion": scene.adhesion_model,
         "interaction": scene.interaction_model,
     }
 
-    def law(path: LoadingPath | MachinePath, variables: list[str]) -> LoadSeparation:
+    def law(path: Path, names: list[str]) -> LoadSeparation:
+        assert not isinstance(path, LateralPath)  # which a stage resolves
         if isinstance(path, MachinePath):
-            return compute_under_machine(source, path, **given, variables=variables)
-        return expected.compute(source, path, **given, variables=variables)
+            return compute_under_machine(source, path, **given, variables=names)
+        return expected.compute(source, path, **given, variables=names)
 
     def highest() -> float:
         return float(source.extremes(_NEGLIGIBLE / max(source.expected_count, 1.0)).height.max())
 
-    return _layered(scene, path, variables, _Contacts(law, highest), source.nominal_area)
+    return _staged(scene, path, variables, Contacts(law, highest, source.nominal_area))
 
 
-def _layered(scene: Scene, path: Path, variables: list[str], contacts: _Contacts, area: float | None) -> LoadSeparation:
-    """Return the law of a scene from that of its elastic contacts, on a nominal area [m2]."""
-    asked = of_contacts(variables)
-    if scene.viscoelastic is None:
-        law = with_tangential(scene, contacts.law, path, asked)
-    else:
-        from roughmdr.batch.viscoelastic import law_of
-
-        assert isinstance(path, LoadingPath)  # as ``Scene`` validates
-
-        def elastic(separation: Floats, names: list[str]) -> LoadSeparation:
-            return contacts.law(LoadingPath.along(separation, unload=False, adhesive=False), names)
-
-        law = law_of(scene, path.separation, asked, elastic, contacts.highest(), area)
-    return with_conductances(law, scene.conductance_factors).only(variables)
+def _staged(scene: Scene, path: Path, variables: list[str], contacts: Contacts) -> LoadSeparation:
+    """Return the law that the stages of a scene make of that of its contacts."""
+    for stage in scene.stages:
+        contacts = contacts._replace(law=stage.law(scene, contacts))
+    return contacts.law(path, variables).only(variables)

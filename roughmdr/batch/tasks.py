@@ -18,11 +18,11 @@ from roughmdr.batch.realization import simulate_realization
 from roughmdr.batch.resume.keys import check_versions, versions
 from roughmdr.batch.task_result import ResultRow, Row, TaskResult, merge_rows, row_of
 from roughmdr.errors import RoughmdrError
-from roughmdr.layer.conductance import of_contacts
-from roughmdr.layer.slip import normal_variables
 from roughmdr.loading.pull_off import PullOff
 from roughmdr.numerics.arguments import Floats
 from roughmdr.scene import Scene
+from roughmdr.stages.conduction import of_contacts
+from roughmdr.stages.slip import normal_variables
 from roughmdr.variables import ADHESION_CODES, DONE, FAILED
 
 _SINGLE_TASK = 0.1  # a batch that takes less [s] is one task: to load dask takes as long

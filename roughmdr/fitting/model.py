@@ -20,6 +20,7 @@ from roughmdr.numerics.arguments import Floats
 from roughmdr.scene import Scene, read
 from roughmdr.scene.keys import set_key
 from roughmdr.schema.toml_text import parse_toml
+from roughmdr.stages import stages_in
 
 _LEAST_ERROR = 1e-12  # relative error of the force of a contact
 _LONGEST_STEP = 0.01  # largest change of x in differences
@@ -60,17 +61,17 @@ class Model:
             raise SceneError(f"scene: cannot be fitted, for it has no expected law: {reason}")
         if curve.quantity == "pressure" and scene.nominal_area is None:
             raise SceneError(
-                f"{curve.origin}: pressure needs a nominal area in the scene: asperities.patch, and no [nominal]"
+                f"{curve.origin}: pressure needs a nominal area in the scene: asperities.patch, and a flat"
             )
         self._start, self._free = scene, free
         self._table = parse_toml(scene.toml)
         self.curve = curve
         self.parameters: list[Parameter] = free_parameters(free, scene, self._table, curve)
         self.bounds: tuple[Floats, Floats] = tuple(np.transpose([each.bounds for each in self.parameters]))
-        source, layers = scene.asperities, (scene.interaction, scene.viscoelastic, scene.nominal)
-        self._is_plain = source.node_count(2) == source.node_count(1) and all(layer is None for layer in layers)
+        alike = scene.asperities.node_count(2) == scene.asperities.node_count(1)
+        self._is_plain = alike and scene.interaction is None and not scene.unlike
         self.adheres = scene.work > 0.0
-        self.jumps = source.equal_heights and self.adheres
+        self.jumps = scene.asperities.equal_heights and self.adheres
         self._path = LoadingPath.along(curve.values, unload=False, adhesive=scene.work > 0.0)
         self.exact = True
         self.evaluations = 0
@@ -260,7 +261,7 @@ def scene_to_fit(source: Any, changes: Any, curve: MeasuredCurve, free: list[str
         table["path"] = steps
         for section in ("batch", "accuracy"):
             table.pop(section, None)
-        if "nominal" in table:  # which has no other law than the expected one
+        if not all(stage.flat for stage in stages_in(table)):  # else there is no law but the expected one
             table["batch"] = {"estimator": "expected"}
         for key, entries in sweep.items() if isinstance(sweep, dict) else ():
             if key in free:

@@ -14,11 +14,12 @@ from roughmdr.scene.keys import key_readers
 from roughmdr.scene.sweep import SECTIONS
 from roughmdr.schema.quantities import Reader, WholeNumber
 from roughmdr.schema.wording import short_repr, suggestion
+from roughmdr.stages import STAGES
 
 OFFSET = "offset"
 """The separation, or position of the far end, of the scene where the measurement reads 0."""
 MACHINE = "path.machine_stiffness"
-_FITTED = {*SECTIONS} - {"tangential"}  # on which a normal law depends
+_FITTED = {*SECTIONS} - {stage.key for stage in STAGES if not stage.fitted}  # on which a normal law depends
 _WIDEST = math.log(1e4)  # of a logarithm, from its start
 _FARTHEST = 1e4  # of other numbers from their start, in their scale
 _NEARBY = math.log(5.0)  # where other starts are sought

@@ -45,3 +45,7 @@ class LateralPath(NamedTuple):
         """Return the branch of each step, labelled: "unloading" backward."""
         names = np.where(self.memory.direction < 0.0, "unloading", "loading")
         return Array(("step",), names, {"long_name": COORDINATES["branch"].long_name})
+
+
+Path = LoadingPath | MachinePath | LateralPath
+"""Whatever a law is computed along."""

@@ -13,13 +13,13 @@ COMPILED = (
     "expected",
     "interaction",
     "kernels",
-    "layer",
+    "stages/curved",
     "loading",
     "numerics",
     "shapes",
 )
 """All that jitted functions are made of."""
-NUMBERS = (*COMPILED, "asperity", "batch", "elements", "ensemble", "layer", "scene", "schema", "spectrum.py")
+NUMBERS = (*COMPILED, "asperity", "batch", "elements", "ensemble", "scene", "schema", "spectrum.py", "stages")
 """All that decides the numbers of a realisation, given its scene."""
 
 

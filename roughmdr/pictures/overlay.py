@@ -89,10 +89,8 @@ def _evaluate_cells(
 
 def _evaluate_curve(curve: TheoryCurve, names: list[str], cell: Cell) -> dict[str, Floats]:
     """Return those of the variables that a theory curve gives in a cell; RoughmdrError if it gives none."""
-    if cell.scene.viscoelastic is not None:
-        raise RoughmdrError("it is elastic, and the scene is not")
-    if cell.scene.nominal is not None:
-        raise RoughmdrError("the scene has [nominal], and theories are of a flat")
+    if cell.scene.unlike:
+        raise RoughmdrError(f"it is of elastic bodies under a flat, and the scene of {cell.scene.unlike}")
     known = {name: _THEORY_VARIABLES[name] for name in names if name in _THEORY_VARIABLES}
     given = {name: (variable, per_area) for name, (variable, per_area) in known.items() if variable in curve.variables}
     if not given:

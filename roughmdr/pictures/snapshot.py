@@ -62,8 +62,8 @@ class Snapshot(NamedTuple):
         if np.isnan(path[step]):
             raise StoreError(f"step is {step}, at which there is no separation: the load has pulled the flat off")
         scene = read(file or result.scene).cells[cells.index(cell)]
-        if scene.viscoelastic is not None:
-            raise StoreError("the result is viscoelastic: single contacts are not computed of its scene")
+        if scene.unlike:
+            raise StoreError(f"the result is of {scene.unlike}: single contacts are not computed of its scene")
         method = result.method(cell) or result.estimator
         if method == "expected":
             raise StoreError(

@@ -9,8 +9,8 @@ import numpy as np
 
 from roughmdr.fitting.stored import given_fit
 from roughmdr.report import citations as papers
-from roughmdr.report import citations_of_layers as layer_papers
 from roughmdr.report.citations import Paper
+from roughmdr.report.citations_of_stages import OF_STAGES
 from roughmdr.result.given import given_result
 from roughmdr.result.view import ResultView
 from roughmdr.scene import Scene, read
@@ -18,7 +18,7 @@ from roughmdr.schema.keywords import named_keywords
 from roughmdr.schema.quantities import adheres
 from roughmdr.schema.toml_text import parse_toml
 from roughmdr.schema.wording import printable
-from roughmdr.variables import CONDUCTANCES
+from roughmdr.stages import STAGES, stages_in
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -143,7 +143,7 @@ class _Used(NamedTuple):
     @property
     def grid(self) -> bool:
         """Whether boundary elements are used, or may be."""
-        if "reference" in self.table:
+        if any(stage.placed for stage in stages_in(self.table)):
             return True
         if self.result is not None and "grid_points" in self.result.variables:
             return self.result.largest("grid_points") > 0.0
@@ -155,9 +155,9 @@ def _papers(used: _Used) -> Iterator[tuple[str, Paper]]:
     yield from _of_contacts(used)
     yield from _of_surfaces(used)
     yield from _of_coupling(used)
-    if not {"conductance_radius", *CONDUCTANCES}.isdisjoint(used.table.get("output", {}).get("variables", ())):
-        yield from (("conductance", paper) for paper in (layer_papers.HOLM, layer_papers.BARBER))
-    yield from _of_slip(used)
+    variables = list(used.table.get("output", {}).get("variables", ()))
+    for stage in STAGES:
+        yield from ((reason, OF_STAGES[key]) for reason, key in stage.papers(used.table, variables))
 
 
 def _of_contacts(used: _Used) -> Iterator[tuple[str, Paper]]:
@@ -175,8 +175,6 @@ def _of_contacts(used: _Used) -> Iterator[tuple[str, Paper]]:
     ranged = used.values("adhesion.strength") or used.values("adhesion.range")
     if models and ranged:
         yield "adhesion", papers.TABOR
-    if "viscoelastic" in used.table:
-        yield from (("viscoelastic", paper) for paper in (layer_papers.LEE_RADOK, layer_papers.TING))
 
 
 def _of_surfaces(used: _Used) -> Iterator[tuple[str, Paper]]:
@@ -188,8 +186,6 @@ def _of_surfaces(used: _Used) -> Iterator[tuple[str, Paper]]:
         yield "roughness", papers.GREENWOOD
     if used.values("asperities.hurst"):
         yield "roughness", papers.PERSSON
-    if "nominal" in used.table or any(key.startswith("nominal.") for key in used.table.get("sweep", {})):
-        yield "curvature", layer_papers.GREENWOOD_TRIPP
 
 
 def _of_coupling(used: _Used) -> Iterator[tuple[str, Paper]]:
@@ -204,14 +200,6 @@ def _of_coupling(used: _Used) -> Iterator[tuple[str, Paper]]:
             yield "elements", papers.STANLEY_KATO
         if "free" in boundaries or ("surface" in used.sources and "interaction" not in used.table):
             yield "elements", papers.LOVE
-
-
-def _of_slip(used: _Used) -> Iterator[tuple[str, Paper]]:
-    if "lateral" in used.table.get("path", {}):
-        own = layer_papers.CATTANEO, layer_papers.MINDLIN, layer_papers.JAEGER, layer_papers.MASING
-        yield from (("slip", paper) for paper in (*own, layer_papers.MINDLIN_DERESIEWICZ))
-    elif "tangential_stiffness" in used.table.get("output", {}).get("variables", ()):
-        yield "slip", layer_papers.MINDLIN
 
 
 def _line(paper: Paper) -> str:

@@ -38,7 +38,7 @@ def describe_pull_off(result: ResultView, not_known: str) -> Iterator[tuple[str,
         share = f" in {few.size} of {len(cells)} cells" if len(cells) > 1 else ""
         verb = "carries" if few.max() == few.min() == 1.0 else "carry"
         noun = "contact" if verb == "carries" else "contacts"
-        small = "a patch this small" if "nominal" not in result.attrs else "a body on so few"
+        small = "a patch this small" if result.flat else "a body on so few"
         yield "", f"{counted} {noun} {verb} it{share}: {small} does not show the pull-off of a surface"
     yield "", f"({_definition(result)})"
 

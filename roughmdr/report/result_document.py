@@ -17,10 +17,10 @@ from roughmdr.report.documents import (
     trust_table,
 )
 from roughmdr.report.few_contacts import sample_of_result
-from roughmdr.report.reference import reference_lines
 from roughmdr.report.summary import describe_failed, first_remark
 from roughmdr.result.trust import trust_of_result
 from roughmdr.result.view import ResultView, swept_values
+from roughmdr.stages import STAGES
 from roughmdr.storage.labelled import Array
 from roughmdr.variables import STATUSES
 
@@ -45,7 +45,7 @@ def result_table(result: ResultView, file: Path | None, elapsed: float | None = 
         "trust": trust_table(trust_of_result(result)),
         "sample": paragraphs(sample_of_result(result)).get("sample"),
         "advice": paragraphs(advice_lines(attrs["scene"], result.largest("resolution_error"))).get("advice"),
-        "reference": paragraphs(reference_lines(result)).get("reference"),
+        "reference": paragraphs(line for stage in STAGES for line in stage.result_lines(result)).get("reference"),
         "accuracy": attrs.get("accuracy") or None,
         "failed": describe_failed(result) or None,
         "warnings": attrs.get("warnings", "").splitlines(),

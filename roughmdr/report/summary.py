@@ -13,11 +13,11 @@ from roughmdr.report.few_contacts import foreseen_sample, sample_of_result
 from roughmdr.report.plausible import implausible_lines
 from roughmdr.report.prospect import prospect_lines
 from roughmdr.report.pull_off import describe_pull_off
-from roughmdr.report.reference import reference_lines
 from roughmdr.result.trust import trust_of_result
 from roughmdr.result.view import ResultView
 from roughmdr.schema.units import format_quantity
 from roughmdr.schema.wording import format_bytes, format_seconds, format_table, printable
+from roughmdr.stages import STAGES
 from roughmdr.storage.labelled import Array, Labelled
 from roughmdr.variables import DONE, FAILED, LATERAL, TIME
 
@@ -47,9 +47,9 @@ def describe_plan(plan: "Plan", estimate: "Estimate", prospect: "Prospect", work
         *_lateral(plan),
         *prospect_lines(prospect),
         *foreseen_sample(plan, prospect),
-        *_indent("slip", plan.slip_notes),
+        *(line for noted, lines in plan.stage_notes.items() for line in _indent(noted, lines)),
         *advice_lines(plan.scene.toml, foreseen_resolution(prospect)),
-        *_reference(plan, estimate),
+        *_beside(plan, estimate),
         *_motion(plan.coordinates()),
     ]
     failures = dict.fromkeys([*estimate.failures, *prospect.failures])
@@ -75,13 +75,11 @@ def _required_accuracy(plan: "Plan") -> Iterator[tuple[str, str]]:
         yield "", "time, memory and tasks are those of the runs above"
 
 
-def _reference(plan: "Plan", estimate: "Estimate") -> Iterator[tuple[str, str]]:
-    """Yield what [reference] adds, and how long it may take."""
-    reference = plan.scene.reference
-    if reference is not None:
-        yield "reference", f"boundary elements beside each realisation, their grid right to {reference.error:g};"
-        longest, finest = format_seconds(estimate.longest), format_bytes(estimate.finest)
-        yield "", f"few and small contacts need finer grids: in all up to about {longest}, and {finest} for the grids"
+def _beside(plan: "Plan", estimate: "Estimate") -> Iterator[tuple[str, str]]:
+    """Yield what stages add to each run, and how long it may take."""
+    longest, finest = format_seconds(estimate.longest), format_bytes(estimate.finest)
+    for stage in plan.scene.stages:
+        yield from _indent(stage.key, stage.plan_lines(longest, finest))
 
 
 def _motion(coordinates: Mapping[str, Array]) -> Iterator[tuple[str, str]]:
@@ -126,9 +124,10 @@ def summary_lines(result: ResultView, elapsed: float | None = None) -> Iterator[
     yield from sample_of_result(result)
     yield from contact_pressure_lines(result)
     yield from conduction_lines(result)
-    yield from _indent("slip", attrs.get("slip", "").splitlines())
+    for noted in [stage.noted for stage in STAGES if stage.noted in attrs]:
+        yield from _indent(noted, attrs[noted].splitlines())
     yield from advice_lines(attrs["scene"], result.largest("resolution_error"))
-    yield from reference_lines(result)
+    yield from (line for stage in STAGES for line in stage.result_lines(result))
     yield from _adhesion(result)
     yield from _indent("accuracy", attrs.get("accuracy", "").splitlines())
     yield from _indent("failed", describe_failed(result).splitlines())

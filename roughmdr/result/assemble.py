@@ -82,10 +82,10 @@ def assemble(
     }
     if scene.interaction is not None:
         attrs["interaction"] = scene.interaction.model
-    if scene.nominal is not None:
-        attrs["nominal"] = scene.nominal.shape
-    notes = {"path": plan.path_notes, "slip": plan.slip_notes, "lattice": plan.lattice_lines, "map": plan.map_lines}
-    attrs |= {name: "\n".join(lines) for name, lines in notes.items() if lines}
+    for stage in scene.stages:
+        attrs |= stage.attributes()
+    notes = {"path": plan.path_notes, "lattice": plan.lattice_lines, "map": plan.map_lines}
+    attrs |= {name: "\n".join(lines) for name, lines in {**notes, **plan.stage_notes}.items() if lines}
     if scene.accuracy is not None:
         data["accuracy_reached"] = of_cells("accuracy_reached", [each.error for each in methods])
         data["accuracy_method"] = of_cells("accuracy_method", [ESTIMATORS.index(each.estimator) for each in methods])

@@ -21,6 +21,7 @@ from roughmdr.model_error.parts import PARTS, TRUSTED_ERROR, TRUSTED_FRACTION
 from roughmdr.numerics.arguments import Floats
 from roughmdr.result.view import ResultView
 from roughmdr.schema.units import format_quantity
+from roughmdr.stages import stages_in
 from roughmdr.variables import LATERAL
 
 if TYPE_CHECKING:
@@ -108,15 +109,14 @@ def trust_of_result(result: ResultView) -> Iterator[tuple[str, str]]:
     if set(result.variables) >= _NAMES:
         numbers = {name: result.variables[name].values for name in (_NAMES | {"grid_points"}) & set(result.variables)}
         interaction = result.attrs.get("interaction")
-        alone = {"viscoelastic", "nominal"} & result.scene.keys()
-        advise = LATERAL.name not in result.coordinates and not alone
-        curved = "nominal" in result.attrs
+        unlike = any(stage.unlike for stage in stages_in(result.scene))
+        advise = LATERAL.name not in result.coordinates and not unlike
         yield from trust_lines(
             numbers,
             _at_pull_off(result),
             interaction=interaction,
             advise=advise,
-            curved=curved,
+            curved=not result.flat,
             summits=_has_summits(result.scene),
         )
     else:

@@ -13,6 +13,7 @@ from roughmdr.numerics.arguments import Floats, Ints
 from roughmdr.schema.quantities import adheres
 from roughmdr.schema.toml_text import parse_toml
 from roughmdr.schema.units import format_quantity
+from roughmdr.stages import stages_in
 from roughmdr.storage.labelled import Array, Labelled
 from roughmdr.variables import (
     AUXILIARY_COORDINATES,
@@ -73,6 +74,11 @@ class ResultView:
     def scene(self) -> dict[str, Any]:
         """The scene as a table; empty of a law of one ensemble, which has none."""
         return parse_toml(self.attrs.get("scene", ""))
+
+    @property
+    def flat(self) -> bool:
+        """Whether a flat presses all asperities alike."""
+        return all(stage.flat for stage in stages_in(self.scene))
 
     @cached_property
     def adheres(self) -> bool:

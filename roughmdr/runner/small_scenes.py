@@ -4,6 +4,7 @@ from collections.abc import Iterator
 from typing import Any
 
 from roughmdr.shapes import SCENE_SHAPES
+from roughmdr.stages import STAGES
 
 _STEPS = 6
 """Number of steps of a path, enough for contacts to be made and lost on the way."""
@@ -31,24 +32,12 @@ _ADHESION: dict[str, dict[str, Any]] = {
 _HILLS = {"source": "spectrum", "patch": "60 um", "hurst": 0.8, "long_wave": "30 um", "short_wave": "10 um"}
 _SEPARATION = {"separation": {"start": "2 sigma", "stop": "1 sigma", "steps": _STEPS}}
 _PAIRS = {"model": "pairwise", "boundary": "periodic"}
-_HELD = {"separation": "1 sigma", "lateral": {"amplitude": "1 nm", "steps": 4}}
 _SECTIONS: dict[str, dict[str, Any]] = {
     "pairs, periodic": {"interaction": _PAIRS},
     "pairs, free": {"interaction": {**_PAIRS, "boundary": "free"}},
     "adhesive pairs": {"interaction": _PAIRS, **_ADHESION["jkr"]},
     "mean field": {"interaction": {"model": "mean_field"}},
-    "conduction": {
-        "conduction": {"conductivity": "400 W/m/K"},
-        "output": {"variables": ["force", "thermal_conductance"]},
-    },
-    "relaxation": {
-        "viscoelastic": {"relaxation": [{"time": "1 s", "share": 0.5}], "speed": "1 um/s"},
-        "path": {**_SEPARATION, "unload": True},
-        "output": {"variables": ["force", "contact_area"]},
-    },
-    "slip": {"tangential": {"friction": 0.3}, "material": {"modulus": "1 GPa", "poisson": 0.3}, "path": _HELD},
-    "curved body": {"nominal": {"radius": "10 mm", "error": 1e-2}, "batch": {"estimator": "expected"}},
-    "reference": {"reference": {"model": "boundary_elements", "error": 0.5}},
+    **{stage.key: dict(stage.small_scene) for stage in STAGES},
     "summits": {"asperities": {"source": "nayak", "patch": "1 mm", "m0": "1 um^2", "m2": 1e-2, "m4": "2e8 m^-2"}},
     "hills": {"asperities": {**_HILLS, "rms_slope": 0.05}},
 }

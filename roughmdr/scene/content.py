@@ -1,15 +1,13 @@
 """The sections of a scene together, and what follows from them."""
 
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
-from pydantic import BeforeValidator, InstanceOf
+from pydantic import BeforeValidator, InstanceOf, create_model
 
 from roughmdr.ensemble import Asperities
 from roughmdr.errors import RoughmdrError
 from roughmdr.interaction.settings import Interaction
 from roughmdr.kernels.adhesion import Adhesion
-from roughmdr.scene.conduction import ConductionSection
-from roughmdr.scene.nominal import NominalSection
 from roughmdr.scene.path import FlatPath
 from roughmdr.scene.sections import (
     Accuracy,
@@ -19,13 +17,13 @@ from roughmdr.scene.sections import (
     InteractionSection,
     MaterialSection,
     Output,
-    ReferenceSection,
 )
 from roughmdr.scene.sweep import Sweep
-from roughmdr.scene.tangential import TangentialSection
-from roughmdr.scene.viscoelastic import ViscoelasticSection
 from roughmdr.schema.material import effective_modulus
 from roughmdr.schema.quantities import Section, WholeNumber
+from roughmdr.stages import STAGES
+from roughmdr.stages.given import AnySection
+from roughmdr.stages.stage import Stage
 
 _NEGLIGIBLE = 0.01  # of the required error
 
@@ -36,8 +34,8 @@ def _check_title(value: object) -> str:
     return value
 
 
-class Sections(Section):
-    """All sections of a scene."""
+class _Sections(Section):
+    """All sections of a scene but for the stages."""
 
     title: Annotated[str, BeforeValidator(_check_title)]
     seed: Annotated[int, BeforeValidator(WholeNumber(0, 2**63 - 1))] = 0
@@ -46,11 +44,6 @@ class Sections(Section):
     adhesion: AdhesionSection | None = None
     asperities: Asperities
     interaction: InteractionSection | None = None
-    reference: ReferenceSection | None = None
-    conduction: ConductionSection | None = None
-    viscoelastic: ViscoelasticSection | None = None
-    tangential: TangentialSection | None = None
-    nominal: NominalSection | None = None
     path: FlatPath
     output: Output = Output()
     batch: Batch = Batch()
@@ -59,8 +52,8 @@ class Sections(Section):
 
     def reason_against(self, estimator: str) -> str:
         """Return why the estimator "stratified" or "expected" is impossible; empty where it is possible."""
-        if estimator == "expected" and self.reference is not None:
-            return "the reference presses single surfaces, which the expected law does not know"
+        if reason := next(filter(None, (stage.reason_against(estimator) for stage in self.stages)), ""):
+            return reason
         if estimator == "expected" and self.needs_positions:
             return "asperities that feel each other in pairs have positions, which the expected law does not know"
         return self.asperities.reason_against(estimator)
@@ -75,7 +68,7 @@ class Sections(Section):
             return (self.batch.estimator,)
         if self.accuracy.method != "auto":
             return (self.accuracy.method,)
-        if self.nominal is not None:
+        if not self.flat:
             return ("expected",)
         count = self.asperities.expected_count
         is_whole = abs(count - round(count)) <= _NEGLIGIBLE * self.accuracy.relative * count
@@ -111,9 +104,24 @@ class Sections(Section):
         return None if self.interaction is None else self.interaction.interaction_model
 
     @property
-    def conductance_factors(self) -> dict[str, float]:
-        """Each conductance over the conductance radius [SI], where [conduction] tells it."""
-        return {} if self.conduction is None else self.conduction.factors
+    def stages(self) -> tuple[Stage, ...]:
+        """The stages that the scene has, innermost first."""
+        given = (getattr(self, stage.key) for stage in STAGES)
+        return tuple(section for section in given if section is not None)
+
+    def stage(self, kind: type[AnySection]) -> AnySection | None:
+        """Return the stage of a kind; None where the scene has none."""
+        return next((stage for stage in self.stages if isinstance(stage, kind)), None)
+
+    @property
+    def flat(self) -> bool:
+        """Whether a flat presses all asperities alike."""
+        return all(stage.flat for stage in self.stages)
+
+    @property
+    def unlike(self) -> str:
+        """Why the law is not that of elastic contacts under a flat; empty if it is."""
+        return next(filter(None, (stage.unlike for stage in self.stages)), "")
 
     @property
     def needs_positions(self) -> bool:
@@ -121,9 +129,14 @@ class Sections(Section):
         return self.interaction is not None and self.interaction.model == "pairwise"
 
     @property
+    def placed(self) -> bool:
+        """Whether realisations need the positions of their asperities, for the law or beside it."""
+        return self.needs_positions or any(stage.placed for stage in self.stages)
+
+    @property
     def nominal_area(self) -> float | None:
         """[m2]; None where it is unknown, and under a curved body, which has none."""
-        return self.asperities.nominal_area if self.nominal is None else None
+        return self.asperities.nominal_area if self.flat else None
 
     @property
     def repeats(self) -> bool:
@@ -134,7 +147,14 @@ class Sections(Section):
     def map_lines(self) -> tuple[str, ...]:
         """Lines on the map of the asperities and, where that matters, on how it is continued; none without a map."""
         lines = self.asperities.description
-        if not lines or not (self.needs_positions or self.reference is not None):
+        if not lines or not self.placed:
             return lines
         joined = "" if self.asperities.repeats else ", opposite edges joined, though the map is not periodic"
         return (*lines, f"pressed as a patch that repeats{joined}" if self.repeats else "pressed alone on a half-space")
+
+
+if TYPE_CHECKING:
+    Sections = _Sections
+else:
+    _stages: dict[str, Any] = {stage.key: (stage | None, None) for stage in STAGES}
+    Sections = create_model("Sections", __base__=_Sections, __doc__="All sections of a scene.", **_stages)

@@ -26,6 +26,7 @@ from roughmdr.schema.json_schema import (
     without_required,
 )
 from roughmdr.schema.quantities import Quantity, Reader, Section
+from roughmdr.stages import STAGES
 
 _DRAFT = "https://json-schema.org/draft/2020-12/schema"
 _TYPES: dict[Any, str] = {int: "integer", float: "number", str: "string"}
@@ -68,7 +69,7 @@ class _Sections:
         default = field.default
         stated = isinstance(default, bool | int | float | str | list)
         told = f"Default: {_toml(default)}" if stated and not field.is_required() else ""
-        result = described(schema, describe_key(at, name), "" if reader is None else str(reader), told)
+        result = described(schema, _describe(at, name), "" if reader is None else str(reader), told)
         return {**result, "default": default} if told else result
 
     def _value(self, declared: tuple[Any, ...], key: str) -> JsonSchema:
@@ -112,6 +113,16 @@ class _Sections:
             if entry not in entries:
                 entries.append(entry)
         return schema
+
+
+def _describe(at: str, name: str) -> str:
+    """Return the line on a key of a section, whose dotted key is ``at``."""
+    for stage in STAGES:
+        if (at, name) == ("", stage.key):
+            return stage.about
+        if at.split(".", maxsplit=1)[0] == stage.key:
+            return stage.words[f"{at}.{name}".removeprefix(f"{stage.key}.")]
+    return describe_key(at, name)
 
 
 def _readers(declared: tuple[Any, ...]) -> Iterator[Reader]:

@@ -12,17 +12,15 @@ from roughmdr.errors import Fault, OutOfRange, SceneError
 from roughmdr.interaction.settings import reason_against_adhesion
 from roughmdr.scene.content import Sections
 from roughmdr.scene.lateral import displacements
-from roughmdr.scene.layers import check_layers, with_usual_variables
 from roughmdr.scene.path import FlatPath
-from roughmdr.scene.sections import (
-    Accuracy,
-)
+from roughmdr.scene.sections import Accuracy
 from roughmdr.scene.separation import CLEAR, Separation, Target
 from roughmdr.scene.sweep import Axis
 from roughmdr.schema.faults import mismatch
 from roughmdr.schema.listing import html_listing, listing
 from roughmdr.schema.units import format_quantity, millipascals
 from roughmdr.schema.wording import printable, short_repr
+from roughmdr.stages import STAGES
 from roughmdr.variables import CONTROLS, CURVE_VARIABLES, PRELOADS
 
 _SOFTEST = 1.0
@@ -89,7 +87,11 @@ class Scene(Sections):
     @model_validator(mode="before")
     @classmethod
     def _usual_variables(cls, table: Any) -> Any:
-        return with_usual_variables(table)
+        output = table.get("output", {})
+        if not isinstance(output, dict) or "variables" in output:
+            return table
+        usual = next(filter(None, (stage.usual_variables(table) for stage in reversed(STAGES))), None)
+        return table if usual is None else {**table, "output": {**output, "variables": usual}}
 
     @model_validator(mode="after")
     def _sections_agree(self) -> "Scene":
@@ -106,9 +108,7 @@ class Scene(Sections):
         coupling = self.interaction_model
         if coupling is not None and (reason := reason_against_adhesion(coupling, self.adhesion_model)):
             raise mismatch("interaction", reason)
-        if self.reference is not None:
-            self._check_reference()
-        check_layers(self)
+        self._check_stages()
         if estimator != "sampled" and (reason := self.reason_against(estimator)):
             raise mismatch("batch.estimator", f"cannot be {estimator!r}: {reason}")
         if self.accuracy is not None:
@@ -127,12 +127,14 @@ class Scene(Sections):
             raise mismatch(f"asperities.{key}", f"{exponent:g} is too low; with adhesion it must be above 0.5")
         return self
 
-    def _check_reference(self) -> None:
-        if self.work > 0.0:
-            raise mismatch("reference", "does not go with adhesion: boundary elements press without it")
-        if self.path.control != "separation":
-            instead = "path.separation = { stop = { pressure = ... } } loads to a pressure"
-            raise mismatch("reference", f"goes with path.separation, not with path.{self.path.key}; {instead}")
+    def _check_stages(self) -> None:
+        if len(alone := [key for stage in reversed(self.stages) if (key := stage.alone(self))]) > 1:
+            raise mismatch(alone[0], f"does not go with {alone[1]}: each is of the elastic law under a flat")
+        for stage in reversed(STAGES):
+            if (section := self.stage(stage)) is None:
+                stage.check_without(self)
+            else:
+                section.check(self)
 
     def _check_accuracy(self, accuracy: Accuracy) -> None:
         if not self.asperities.is_random:

@@ -21,7 +21,6 @@ from roughmdr.variables import (
 )
 
 _MAX_REALIZATIONS = 1_000_000_000
-_REFERENCE_ERRORS = 1e-3, 0.5
 _Modulus = Annotated[float, BeforeValidator(Quantity("Pa", above=0.0))]
 _Poisson = Annotated[float, BeforeValidator(Quantity("1", above=-1.0, at_most=0.5))]
 
@@ -99,19 +98,6 @@ class InteractionSection(Section):
     def interaction_model(self) -> Interaction:
         """Interaction with its parameters."""
         return Interaction(self.model, self.boundary, self.order, self.error, self.beyond)
-
-
-class ReferenceSection(Section):
-    """[reference]: the surface pressed by boundary elements beside the law of its asperities, without adhesion.
-
-    The force is right to ``error`` as far as the grid is concerned: relative to itself, and where it is below 1 % of
-    the largest one to that.
-    """
-
-    model: Literal["boundary_elements"]
-    error: Annotated[
-        float, BeforeValidator(Quantity("1", at_least=_REFERENCE_ERRORS[0], at_most=_REFERENCE_ERRORS[1]))
-    ] = 0.02
 
 
 def _check_variable(value: object) -> object:

@@ -15,6 +15,7 @@ from roughmdr.scene.separation import CLEAR, Separation
 from roughmdr.schema.quantities import EntryError, Reader, WholeNumber
 from roughmdr.schema.units import DIMENSIONLESS, spelled_in_results
 from roughmdr.schema.wording import printable, short_repr, suggestion
+from roughmdr.stages import STAGES
 from roughmdr.storage.labelled import Array
 from roughmdr.variables import CONTROLS, PRELOADS, swept_name
 
@@ -24,10 +25,7 @@ SECTIONS = (
     "adhesion",
     "asperities",
     "interaction",
-    "conduction",
-    "nominal",
-    "tangential",
-    "viscoelastic",
+    *sorted(stage.key for stage in STAGES if stage.swept),
 )
 _STOP = "path.separation.stop"
 _PATH_KEYS = (

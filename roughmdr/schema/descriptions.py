@@ -1,6 +1,6 @@
 """A line on each key of a scene, for editors: what it is. Units, bounds and defaults are those of its declaration."""
 
-_SHAPE = {
+SHAPE_WORDS = {
     "radius": "Radius: of curvature at the tip, of the sphere, or of the flat punch",
     "slope": "Slope of the flank, the tangent of its angle to the plane",
     "exponent": "Exponent n of the profile; above 1/2 with adhesion",
@@ -12,6 +12,7 @@ _SHAPE = {
     "cap_radius": "Radius of curvature of the cap; not below radius",
     "edge_radius": "Radius of curvature of the edge",
 }
+"""Lines on the parameters of shapes."""
 _BODY = {"modulus": "Young's modulus", "poisson": "Poisson's ratio"}
 _STEPS = "Number of steps, both ends included"
 _LOADS = {"start": "First load", "stop": "Last load", "steps": _STEPS}
@@ -24,11 +25,6 @@ _SECTIONS: dict[str, dict[str, str]] = {
         "adhesion": "Adhesion between the surfaces; none without this section",
         "asperities": "Where the asperities come from",
         "interaction": "How asperities feel each other; they are independent without this section",
-        "reference": "The surface itself by boundary elements, beside the law of its asperities, without adhesion",
-        "conduction": "How the bodies conduct, for thermal_conductance and electrical_conductance",
-        "viscoelastic": "Relaxation of the modulus while the flat moves in time; the bodies are elastic without it",
-        "tangential": "Friction, for path.lateral, and the tangential stiffness of the bodies",
-        "nominal": "A curved body that presses the asperities, in place of the flat, on an elastic half-space",
         "path": "Way of the rigid flat, or what the machine does that moves it",
         "output": "Variables of the result",
         "batch": "Number of realisations, and how each is made",
@@ -80,7 +76,7 @@ _SECTIONS: dict[str, dict[str, str]] = {
         "periodic": "Whether the map repeats. Default: as its file says, else false",
         "cutoff": "Shorter waves are removed",
         "outliers": 'Marks of undefined points and spikes become "undefined", or are "kept". Default: they are refused',
-        **_SHAPE,
+        **SHAPE_WORDS,
     },
     "asperities.second": {"share": "Share of all asperities"},
     "interaction": {
@@ -89,32 +85,6 @@ _SECTIONS: dict[str, dict[str, str]] = {
         "order": "1: contacts are points to each other; 2: of finite size, on a curved and tilted surface",
         "error": "Largest relative error of the force by the solver",
         "beyond": 'Where too many contacts overlap: "flag" marks the step, "boundary_elements" solves it on a grid',
-    },
-    "tangential": {
-        "friction": "Coefficient of friction",
-        "stiffness_ratio": "G*/E*, tangential over normal stiffness, where only effective_modulus is given",
-    },
-    "reference": {"model": "Method", "error": "Relative error of its force by the grid"},
-    "conduction": {
-        "conductivity": "Thermal conductivity, of both bodies unless counter_conductivity is given",
-        "counter_conductivity": "Thermal conductivity of the other body",
-        "resistivity": "Electrical resistivity, of both bodies unless counter_resistivity is given",
-        "counter_resistivity": "Electrical resistivity of the other body",
-    },
-    "viscoelastic": {
-        "relaxation": "Terms of a Prony series: each takes share (1 - exp(-t/time)) of the instantaneous modulus away",
-        "speed": "Speed of the flat while loading",
-        "retraction_speed": "Speed of the flat while it rises. Default: speed",
-        "dwell": "Time at the lowest separation, spread over path.hold and the repeated turning point",
-    },
-    "viscoelastic.relaxation[]": {
-        "time": "Relaxation time",
-        "share": "Share of the instantaneous modulus that is lost; all together at most 1",
-    },
-    "nominal": {
-        **_SHAPE,
-        "shape": "Shape of the body, which decides the other keys",
-        "error": "Error of the force by the rings of the contact, over the largest force",
     },
     "path": {
         "separation": "Separations of the flat from the datum plane: a table of start, stop and steps, or a list",

@@ -1,6 +1,7 @@
 """pydantic's validation errors as faults of a scene: the dotted key, its value, and what is allowed."""
 
 import copy
+from collections.abc import Iterable
 from functools import reduce
 from operator import getitem
 from typing import Any, get_args
@@ -27,10 +28,7 @@ _SECTIONS = {
         "radius": '"50 um"',
     },
     "interaction": {"model": '"pairwise"'},
-    "conduction": {"conductivity": '"400 W/m/K"', "resistivity": '"17e-9 ohm m"'},
-    "viscoelastic": {"relaxation": '[{ time = "10 ms", share = 0.5 }]', "speed": '"1 um/s"'},
     "path": {"separation": '{ start = "4 sigma", stop = "0 sigma", steps = 200 }'},
-    "tangential": {"friction": "0.3"},
     "accuracy": {"relative": "1e-2"},
 }
 _KEYS = {
@@ -55,7 +53,6 @@ _KEYS = {
     "path.remote.stop": '"-2 sigma"',
     "path.remote.steps": "200",
     "path.lateral.steps": "50",
-    "tangential.stiffness_ratio": "0.8",
     "path.machine_stiffness": '"1 kN/m"',
     "path.preload": '"1 mN"',
     "path.preload_pressure": '"1 MPa"',
@@ -72,7 +69,7 @@ def mismatch(key: str, message: str) -> PydanticCustomError:
 
 def find_faults(error: ValidationError, data: dict[str, Any], declared: Any) -> list[Fault]:
     """Return all faults that pydantic found in ``data``, read as ``declared``: a section or a union of sections."""
-    return [_with_example(_to_fault(fault, data, declared)) for fault in error.errors(include_url=False)]
+    return [_with_example(_to_fault(fault, data, declared), declared) for fault in error.errors(include_url=False)]
 
 
 def with_likely_names(error: ValidationError, data: dict[str, Any], declared: Any) -> dict[str, Any] | None:
@@ -105,10 +102,10 @@ def sections_of(annotation: Any) -> _Sections:
     return [section for part in get_args(annotation) for section in sections_of(part)]
 
 
-def _with_example(fault: Fault) -> Fault:
+def _with_example(fault: Fault, declared: Any) -> Fault:
     """Add an example of what to write to a fault where something is missing."""
     incomplete = fault.message.startswith(_INCOMPLETE) and "it can be" not in fault.message
-    example = example_of(fault.key) if incomplete else ""
+    example = _example_of(fault.key, declared) if incomplete else ""
     return fault._replace(message=f"{fault.message}; for example: {example}") if example else fault
 
 
@@ -180,9 +177,16 @@ def _tags(sections: _Sections, discriminator: str) -> list[str]:
     return sorted({str(tag) for field in fields for tag in get_args(field.annotation)})
 
 
-def example_of(key: str) -> str:
+def _example_of(key: str, declared: Any) -> str:
     """Return what to write for a dotted key or section of a scene, or a key of [asperities]; empty if there is none."""
-    if key in _SECTIONS:
-        return f"[{key}] " + ", ".join(f"{name} = {value}" for name, value in _SECTIONS[key].items())
-    value = _KEYS.get(key) or _KEYS.get(f"asperities.{key}")
+    outer, _, inner = key.partition(".")
+    fields = [section.model_fields[outer] for section in sections_of(declared) if outer in section.model_fields]
+    own = {name: value for field in fields for each in sections_of(field.annotation) for name, value in _own(each)}
+    if own_section := _SECTIONS.get(key) or (own if not inner else None):
+        return f"[{key}] " + ", ".join(f"{name} = {value}" for name, value in own_section.items())
+    value = own.get(inner) or _KEYS.get(key) or _KEYS.get(f"asperities.{key}")
     return f"{key.rsplit('.', maxsplit=1)[-1]} = {value}" if value else ""
+
+
+def _own(section: type[BaseModel]) -> Iterable[tuple[str, str]]:
+    return getattr(section, "examples", {}).items()

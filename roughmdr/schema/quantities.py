@@ -3,6 +3,7 @@
 A reader is a callable that converts a value of the scene or raises RoughmdrError; ``dimension`` is its SI unit.
 """
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Protocol, runtime_checkable
 
@@ -31,6 +32,9 @@ class Section(BaseModel, metaclass=_Listed):
     """A table of a scene: keys that it does not declare are errors, and it is immutable."""
 
     model_config = ConfigDict(extra="forbid", frozen=True, arbitrary_types_allowed=True)
+
+    examples: ClassVar[Mapping[str, str]] = {}
+    """Values of its keys in TOML, for messages on what is missing."""
 
     def __dir__(self) -> list[str]:
         return sorted({*super().__dir__()} - _OF_PYDANTIC)

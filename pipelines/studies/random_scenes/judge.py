@@ -17,6 +17,7 @@ import roughmdr as rm
 from roughmdr import errors
 from roughmdr.errors import FailedRuns, LimitWarning, RoughmdrError, Unfinished
 from roughmdr.scene import Scene, read
+from roughmdr.stages.viscoelastic import Viscoelastic
 
 COMPUTED, FAILED, REFUSED = OUTCOMES = ("computed", "a run failed", "refused")
 _CONDUCTION = ("conductance_radius", "thermal_conductance", "electrical_conductance")
@@ -92,7 +93,7 @@ def _claims(result: xr.Dataset, scene: Scene) -> Claims:
     cells = list(curves_of(result, scene))
     for curves in cells:
         yield from _claims_on_each_step(curves)
-        if curves.scene.viscoelastic is not None:
+        if curves.scene.stage(Viscoelastic) is not None:
             yield from _claims_with_relaxation(curves)
         else:
             yield from (_claims_with_adhesion if curves.scene.work > 0.0 else _claims_without_adhesion)(curves)

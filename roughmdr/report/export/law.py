@@ -7,6 +7,7 @@ import numpy as np
 from roughmdr.errors import StoreError
 from roughmdr.numerics.arguments import Floats, Ints
 from roughmdr.result.view import Leg, ResultView
+from roughmdr.stages import stages_in
 from roughmdr.variables import SEPARATION
 
 
@@ -110,7 +111,7 @@ def _mean(cell: ResultView, quantity: Quantity, steps: Ints) -> tuple[Floats, Fl
     area = 1.0
     if source.per_area:
         if "nominal_area" not in cell.variables:
-            under = " under [nominal]" if "nominal" in cell.attrs else ""
+            under = "".join(f" under [{stage.key}]" for stage in stages_in(cell.scene) if not stage.flat)
             raise StoreError(f"quantity {quantity.name!r} is per nominal area, and the result has none{under}")
         area = float(cell.variables["nominal_area"].values.item())
         if not 0.0 < area < np.inf:

@@ -30,7 +30,8 @@ def nodes_document(
     scene = planned.scene
     if reason := scene.reason_against("expected"):
         raise StoreError(f"quantity 'nodes' is of the expected law, which there is none of: {reason}")
-    if others := [key for key in ("interaction", "viscoelastic", "nominal") if getattr(scene, key) is not None]:
+    others = ["interaction"] * (scene.interaction is not None) + [each.key for each in scene.stages if each.unlike]
+    if others:
         raise StoreError(f"quantity 'nodes' is of independent elastic asperities under a flat; scene has [{others[0]}]")
     if scene.path.lateral is not None:
         raise StoreError("quantity 'nodes' is along a path of separations, and the scene has path.lateral")

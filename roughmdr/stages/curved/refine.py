@@ -13,13 +13,13 @@ from roughmdr.errors import OutOfRange
 from roughmdr.expected.converge import FIRST_ORDER, converge
 from roughmdr.expected.node import Problem, set_up_apart
 from roughmdr.kernels.adhesion import Adhesion
-from roughmdr.layer.curved.bulk import displacement_matrix
-from roughmdr.layer.curved.equilibrium import Half
-from roughmdr.layer.curved.follow import Body, Place
-from roughmdr.layer.curved.local_law import ROWS, LocalLaw
-from roughmdr.layer.curved.rings import Rings
 from roughmdr.numerics.arguments import Floats
 from roughmdr.shapes import Shape
+from roughmdr.stages.curved.bulk import displacement_matrix
+from roughmdr.stages.curved.equilibrium import Half
+from roughmdr.stages.curved.follow import Body, Place
+from roughmdr.stages.curved.local_law import ROWS, LocalLaw
+from roughmdr.stages.curved.rings import Rings
 
 _FIRST_ELEMENTS, _GRADING = 16, 1.5  # equal steps of radius^(1/grading): a light contact is small
 _AT_AN_END = 1e-6  # of the last ring: a kink so close to the axis or to the last ring is of no account

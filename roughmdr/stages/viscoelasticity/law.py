@@ -15,10 +15,10 @@ from typing import NamedTuple
 import numpy as np
 
 from roughmdr.aggregate import LoadSeparation
-from roughmdr.layer.hereditary import Fading, remembered_force
-from roughmdr.layer.motion import FlatMotion
-from roughmdr.layer.relaxation import Relaxation
 from roughmdr.numerics.arguments import Floats
+from roughmdr.stages.viscoelasticity.hereditary import Fading, remembered_force
+from roughmdr.stages.viscoelasticity.motion import FlatMotion
+from roughmdr.stages.viscoelasticity.relaxation import Relaxation
 
 ElasticLaw = Callable[[Floats, list[str]], LoadSeparation]
 """Returns the elastic law at separations [m], in any order, in these variables."""

@@ -4,8 +4,8 @@ import mpmath
 import numpy as np
 import pytest
 
-from roughmdr.layer.hereditary import Fading, Force, _Panels, _remember, remembered_force
 from roughmdr.numerics.arguments import Floats
+from roughmdr.stages.viscoelasticity.hereditary import Fading, Force, _Panels, _remember, remembered_force
 
 
 def power(exponent: float) -> Force:

@@ -9,7 +9,7 @@ import pytest
 from scenes import ASPERITIES, CONDUCTION, scene
 
 import roughmdr as rm
-from roughmdr.layer.conductance import conductances
+from roughmdr.stages.conduction import Conduction
 
 NAMES = ["conductance_radius", "thermal_conductance", "electrical_conductance"]
 PLACED = {**ASPERITIES, "count": 50, "placement": "hard_core", "min_distance": "60 um"}
@@ -138,8 +138,8 @@ def test_without_a_section_it_is_refused() -> None:
 
 def test_what_no_float_holds_is_refused() -> None:
     with pytest.raises(rm.OutOfRange, match="thermal_conductance is not representable"):
-        conductances(np.array([0.0, 1e300]), {"thermal_conductance": 1e300})
+        Conduction(conductivity=5e299).conductances(np.array([0.0, 1e300]))
     with pytest.raises(rm.OutOfRange, match="thermal_conductance is not representable"):
-        conductances(np.array([0.0, 1e-5]), {"thermal_conductance": 1e-320})
-    found = conductances(np.array([0.0, math.nan]), {"thermal_conductance": 1.0})["thermal_conductance"]
+        Conduction(conductivity=5e-321).conductances(np.array([0.0, 1e-5]))
+    found = Conduction(conductivity=0.5).conductances(np.array([0.0, math.nan]))["thermal_conductance"]
     np.testing.assert_array_equal(found, [0.0, math.nan])

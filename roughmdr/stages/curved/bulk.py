@@ -13,10 +13,10 @@ import math
 
 import numpy as np
 
-from roughmdr.layer.curved.rings import Rings
 from roughmdr.numerics.arguments import Floats
 from roughmdr.numerics.gauss import unit_gauss
 from roughmdr.numerics.jit import njit
+from roughmdr.stages.curved.rings import Rings
 
 _NODES, _WEIGHTS = unit_gauss(12)
 

@@ -6,10 +6,10 @@ from typing import NamedTuple
 import numpy as np
 
 from roughmdr.errors import OutOfRange
-from roughmdr.layer.curved.equilibrium import Half, State, equilibrium, linear_response
-from roughmdr.layer.curved.rings import Rings
 from roughmdr.numerics.arguments import Floats
 from roughmdr.numerics.underway import each_step
+from roughmdr.stages.curved.equilibrium import Half, State, equilibrium, linear_response
+from roughmdr.stages.curved.rings import Rings
 
 
 class Place(NamedTuple):

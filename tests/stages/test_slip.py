@@ -13,11 +13,11 @@ from roughmdr import OutOfRange
 from roughmdr.aggregate import LoadingPath, LoadSeparation, simulate
 from roughmdr.ensemble.ensemble import Ensemble
 from roughmdr.kernels.adhesion import Adhesion
-from roughmdr.layer.slip import FirstCurve, Tangential, partial_slip
 from roughmdr.loading.masing import Masing
 from roughmdr.loading.pull_off import WITHOUT_TENSION
 from roughmdr.numerics.arguments import Floats
 from roughmdr.schema.two_bodies import dundurs_beta, stiffness_ratio
+from roughmdr.stages.slip import FirstCurve, Tangential, partial_slip
 
 E, RATIO, MU = 4e9, 0.8, 0.3
 FORCE, STIFFNESS, LOSS = "tangential_force", "tangential_stiffness", "friction_energy"

@@ -5,8 +5,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from roughmdr.layer.relaxation import Relaxation
 from roughmdr.numerics.arguments import Floats
+from roughmdr.stages.viscoelasticity.relaxation import Relaxation
 
 
 class Contacts(NamedTuple):

@@ -12,12 +12,12 @@ from roughmdr.asperity.validity import ValidityLimits
 from roughmdr.ensemble.ensemble import Ensemble
 from roughmdr.errors import OutOfRange
 from roughmdr.expected.pull_off import ends_apart
-from roughmdr.layer.curved.follow import Body, Place
-from roughmdr.layer.curved.local_law import LocalLaw
-from roughmdr.layer.curved.refine import Layer, Solution, solve
 from roughmdr.loading.pull_off import WITHOUT_TENSION, PullOff, unloadings
 from roughmdr.numerics.arguments import Floats
 from roughmdr.shapes import Shape
+from roughmdr.stages.curved.follow import Body, Place
+from roughmdr.stages.curved.local_law import LocalLaw
+from roughmdr.stages.curved.refine import Layer, Solution, solve
 
 _MAX_ERROR = 0.1  # of the largest force: a larger error is refused
 _FEW = 10  # contacts, of whose number the standard deviation is a third

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from roughmdr.layer.relaxation import Relaxation
+from roughmdr.stages.viscoelasticity.relaxation import Relaxation
 
 DECADES = st.floats(-12.0, 12.0).map(lambda exponent: 10.0**exponent)
 

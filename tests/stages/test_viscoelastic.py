@@ -13,10 +13,10 @@ from oracles.viscoelastic import Triangle
 from roughmdr.aggregate import LoadingPath, LoadSeparation, simulate
 from roughmdr.ensemble import Ensemble
 from roughmdr.kernels.adhesion import Adhesion
-from roughmdr.layer.motion import FlatMotion
-from roughmdr.layer.relaxation import Relaxation
-from roughmdr.layer.viscoelastic import Viscoelasticity, viscoelastic_law
 from roughmdr.numerics.arguments import Floats
+from roughmdr.stages.viscoelasticity.law import Viscoelasticity, viscoelastic_law
+from roughmdr.stages.viscoelasticity.motion import FlatMotion
+from roughmdr.stages.viscoelasticity.relaxation import Relaxation
 
 MODULUS, RADIUS, SLOPE, DEPTH = 4e6, 50e-6, 0.1, 1e-6
 SPHERE = 4.0 / 3.0 * MODULUS * math.sqrt(RADIUS)  # F = this delta^(3/2)

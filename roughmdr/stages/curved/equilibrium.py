@@ -9,9 +9,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from roughmdr.layer.curved.local_law import LocalLaw
 from roughmdr.numerics.arguments import Floats
 from roughmdr.numerics.jit import njit
+from roughmdr.stages.curved.local_law import LocalLaw
 
 _RTOL_STEP = 1e-9  # of the scale of the layer: Newton's method then doubles these digits in its last step
 _ROUNDINGS = 64.0 * float(np.finfo(float).eps)  # of the separations

@@ -16,14 +16,14 @@ from roughmdr import expected
 from roughmdr.aggregate import LoadingPath, LoadSeparation
 from roughmdr.ensemble import Source
 from roughmdr.kernels.adhesion import Adhesion
-from roughmdr.layer import curved
-from roughmdr.layer.curved.bulk import displacement_matrix, row_load
-from roughmdr.layer.curved.law import pull_off_of
-from roughmdr.layer.curved.refine import Layer, solve
-from roughmdr.layer.curved.rings import Rings
 from roughmdr.numerics.arguments import Floats
 from roughmdr.scene import read
 from roughmdr.shapes import FlatPunch, Paraboloid, Shape, Sphere, TruncatedCone, TruncatedParaboloid
+from roughmdr.stages import curved
+from roughmdr.stages.curved.bulk import displacement_matrix, row_load
+from roughmdr.stages.curved.law import pull_off_of
+from roughmdr.stages.curved.refine import Layer, solve
+from roughmdr.stages.curved.rings import Rings
 
 EVERY = ["force", "contact_area", "contact_count", "contact_radius_sum", "stiffness", "nominal_contact_radius"]
 E, R, STD, RADIUS, DENSITY = 1e9, 0.01, 1e-7, 2e-7, 1e12

@@ -1,0 +1,19 @@
+"""Sections of a scene that make another law of that of its contacts, or add to it: one class each."""
+
+from collections.abc import Mapping
+from typing import Any
+
+from roughmdr.stages.conduction import Conduction
+from roughmdr.stages.nominal import Nominal
+from roughmdr.stages.reference import Reference
+from roughmdr.stages.stage import Stage
+from roughmdr.stages.tangential import Tangential
+from roughmdr.stages.viscoelastic import Viscoelastic
+
+STAGES: tuple[type[Stage], ...] = (Nominal, Viscoelastic, Tangential, Conduction, Reference)
+"""All stages, innermost first: each makes its law of that of those before it."""
+
+
+def stages_in(table: Mapping[str, Any]) -> list[type[Stage]]:
+    """Return the stages that a scene, as a table, has in any of its cells."""
+    return [stage for stage in STAGES if stage.is_in(table)]

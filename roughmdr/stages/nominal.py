@@ -1,0 +1,182 @@
+"""[nominal]: the curved body that presses the rough layer, in place of a flat."""
+
+from collections.abc import Iterator, Mapping
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
+
+from pydantic import BeforeValidator, create_model, model_validator
+
+from roughmdr.errors import ShapeError
+from roughmdr.kernels.adhesion import Adhesion
+from roughmdr.schema.descriptions import SHAPE_WORDS
+from roughmdr.schema.faults import mismatch
+from roughmdr.schema.quantities import EntryError, Quantity
+from roughmdr.schema.units import DIMENSIONLESS
+from roughmdr.shapes import SCENE_SHAPES, SHAPES, Shape
+from roughmdr.stages.given import Given
+from roughmdr.stages.stage import Contacts, Law, Stage
+from roughmdr.variables import NOMINAL_VARIABLES
+
+if TYPE_CHECKING:
+    from roughmdr.aggregate.law import LoadSeparation
+    from roughmdr.loading.lateral import Path
+
+DEFAULT_ERROR = 1e-4
+_LEAST_ERROR, _MOST_ERROR = 1e-7, 1e-2
+_BODIES = {name: shape for name, shape in SCENE_SHAPES.items() if not shape.shared}
+_UNITS = {name: unit for shape in _BODIES.values() for name, unit in shape.units.items()}
+_COMPUTED = ("force", "contact_area", "contact_count", "contact_radius_sum", "stiffness", "model_error_curve")
+"""Variables of a law under a curved body."""
+_FORESEEN_ERROR = 1e-2  # of the force, as its law is foreseen
+_TABLES, _STEP, _NODE = 5e-2, 1.5e-2, 5e-2
+"""Seconds: tables of each node, a step on all rings, and with adhesion each node of the first rule at a step."""
+
+
+class _Nominal(Stage):
+    """[nominal]: the profile of the body, by its shape, "paraboloid" by default, and that shape's parameters.
+
+    ``error`` is the largest error of the force by the rings on which the contact is computed, over the largest force.
+    """
+
+    key = "nominal"
+    about = "A curved body that presses the asperities, in place of the flat, on an elastic half-space"
+    about_absent = "curvature of the bodies"
+    words: ClassVar[Mapping[str, str]] = {
+        **SHAPE_WORDS,
+        "shape": "Shape of the body, which decides the other keys",
+        "error": "Error of the force by the rings of the contact, over the largest force",
+    }
+    small_scene: ClassVar[Mapping[str, Any]] = {
+        "nominal": {"radius": "10 mm", "error": 1e-2},
+        "batch": {"estimator": "expected"},
+    }
+    flat = False
+    unlike = "a curved body"
+    most_foreseen = 8
+
+    shape: Literal[tuple(_BODIES)] = "paraboloid"  # type: ignore[valid-type]
+    error: Annotated[float, BeforeValidator(Quantity(DIMENSIONLESS, at_least=_LEAST_ERROR, at_most=_MOST_ERROR))] = (
+        DEFAULT_ERROR
+    )
+
+    @model_validator(mode="after")
+    def _is_a_shape(self) -> "_Nominal":
+        shape = SHAPES[self.shape]
+        for name in self._given:
+            if name not in shape.units:
+                raise EntryError(name, self._given[name], f"is no parameter of the {shape.name}: {_listed(shape)}")
+        try:
+            shape.parameter_set(set(self._given))
+            _ = self.body
+        except ShapeError as error:
+            raise EntryError("shape", self.shape, str(error)) from None
+        return self
+
+    @property
+    def _given(self) -> dict[str, float]:
+        return {name: value for name in _UNITS if (value := getattr(self, name)) is not None}
+
+    @property
+    def body(self) -> Shape:
+        """The shape of the body."""
+        return SHAPES[self.shape](**self._given)
+
+    def check(self, scene: Given) -> None:
+        """Raise a mismatch with what presses a flat, other paths, variables that it lacks, and other than random
+        asperities on a patch.
+        """
+        if scene.interaction is not None:
+            raise mismatch("nominal", "does not go with [interaction]: the half-space gives way under all asperities")
+        for stage in scene.stages:
+            if stage.placed:
+                raise mismatch("nominal", f"does not go with [{stage.key}]: boundary elements press a flat")
+        if scene.path.control != "separation":
+            raise mismatch("nominal", f"goes with path.separation, not with path.{scene.path.key}")
+        if scene.path.target is not None:
+            raise mismatch(f"path.separation.stop.{scene.path.target.variable}", "does not go with [nominal]")
+        for name in scene.output.variables:
+            if name not in _COMPUTED:
+                allowed = ", ".join(_COMPUTED)
+                raise mismatch("output.variables", f"{name!r} is not available with [nominal]; there are {allowed}")
+        if scene.estimators != ("expected",):
+            key = "batch.estimator" if scene.accuracy is None else "accuracy.method"
+            raise mismatch(key, 'must be "expected" with [nominal]: the layer has the expected law of its asperities')
+        if reason := scene.reason_against("expected"):
+            raise mismatch("nominal", f"needs the expected law of the asperities: {reason}")
+        if scene.asperities.equal_heights:
+            raise mismatch("nominal", "needs asperities whose heights scatter: all heights are the same")
+        if scene.asperities.nominal_area is None:
+            raise mismatch("nominal", "needs asperities on a patch, which tells how many there are per area")
+        if reason := _against_adhesion(scene.adhesion_model, SHAPES[scene.asperities.shape_name]):
+            raise mismatch("adhesion.model", f"does not go with [nominal]: {reason}")
+
+    def alone(self, scene: Given) -> str:
+        """Return the key of the section."""
+        return self.key
+
+    def more_variables(self, names: list[str]) -> list[str]:
+        """Return the variables of the contact of the body."""
+        return list(NOMINAL_VARIABLES)
+
+    def clear_above(self, scene: Given) -> float:
+        """Return how far the half-space, too, is drawn up before it detaches [m]."""
+        if scene.work == 0.0:
+            return 0.0
+        from roughmdr.asperity.contact import Contact
+
+        return Contact.of(self.body, scene.effective_modulus, scene.adhesion_model).depth[0]
+
+    def coarse(self) -> "_Nominal":
+        """Return the section with a larger error."""
+        return self.model_copy(update={"error": _FORESEEN_ERROR})
+
+    def expected_seconds(self, nodes: int, steps: int, *, adhering: bool) -> float:
+        """Return about how long the law takes [s]."""
+        return _TABLES * nodes + steps * (_STEP + (_NODE * nodes if adhering else 0.0))
+
+    def law(self, scene: Given, contacts: Contacts) -> Law:
+        """Return the law of the body on a layer with the expected law of the asperities."""
+        from roughmdr.loading.path import LoadingPath
+        from roughmdr.stages import curved
+
+        layer = curved.Layer(scene.asperities, scene.effective_modulus, scene.adhesion_model)
+
+        def law(path: "Path", names: list[str]) -> "LoadSeparation":
+            assert isinstance(path, LoadingPath)  # as ``check`` makes sure
+            return curved.compute(layer, self.body, path, error=self.error, variables=names)
+
+        return law
+
+    def attributes(self) -> dict[str, str]:
+        """Return the shape of the body."""
+        return {self.key: self.shape}
+
+    @classmethod
+    def papers(cls, table: Mapping[str, Any], variables: list[str]) -> Iterator[tuple[str, str]]:
+        """Yield the paper on rough curved bodies."""
+        if cls.is_in(table):
+            yield "curvature", "Greenwood1967"
+
+
+def _listed(shape: type[Shape]) -> str:
+    return ", or ".join(" and ".join(names) for names in shape.parameter_sets)
+
+
+def _against_adhesion(adhesion: Adhesion, asperity: type[Shape]) -> str:
+    """Return why rings cannot remember the contacts of such asperities; empty where they can."""
+    if adhesion.work == 0.0:
+        return ""
+    if adhesion.model != "jkr":
+        return f"rings remember contacts of model 'jkr', not of {adhesion.model!r}"
+    if asperity.branched():
+        return f"contacts of a {asperity.name} have several stable branches, which rings do not remember"
+    return ""
+
+
+if TYPE_CHECKING:
+    Nominal = _Nominal
+else:
+    _parameters: dict[str, Any] = {
+        name: (Annotated[float, BeforeValidator(Quantity(unit, above=0.0))] | None, None)
+        for name, unit in _UNITS.items()
+    }
+    Nominal = create_model("Nominal", __base__=_Nominal, __module__=__name__, **_parameters)

@@ -1,0 +1,200 @@
+"""[reference]: the surface itself, pressed by boundary elements beside the law of its asperities, without adhesion."""
+
+import math
+from collections.abc import Iterator, Mapping
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
+
+import numpy as np
+from pydantic import BeforeValidator
+
+from roughmdr.errors import SceneError
+from roughmdr.schema.faults import mismatch
+from roughmdr.schema.quantities import Quantity
+from roughmdr.stages.conduction import RADIUS, Conduction, of_contacts
+from roughmdr.stages.given import Given
+from roughmdr.stages.stage import Contacts, Drawn, Law, Stage
+from roughmdr.variables import REFERENCE_VARIABLES
+
+if TYPE_CHECKING:
+    from roughmdr.aggregate.law import LoadSeparation
+    from roughmdr.ensemble import Ensemble
+    from roughmdr.loading.lateral import Path
+    from roughmdr.numerics.arguments import Floats
+
+_ERRORS = 1e-3, 0.5
+_ALWAYS = ("reference_force", "reference_error")
+_STEP, _POINT = 5e-3, 3e-6
+"""Seconds of a separation, and of a point there on all its grids."""
+_ALONE, _BYTES = 4.0, 160
+"""Factor on the points around a surface that stands alone; bytes of a point."""
+
+
+class Reference(Stage):
+    """[reference]: boundary elements beside each realisation.
+
+    The force is right to ``error`` as far as the grid is concerned: relative to itself, and where it is below 1 % of
+    the largest one to that.
+    """
+
+    key = "reference"
+    about = "The surface itself by boundary elements, beside the law of its asperities, without adhesion"
+    about_absent = "boundary elements"
+    words: ClassVar[Mapping[str, str]] = {"model": "Method", "error": "Relative error of its force by the grid"}
+    small_scene: ClassVar[Mapping[str, Any]] = {"reference": {"model": "boundary_elements", "error": 0.5}}
+    swept = False
+    placed = True
+
+    model: Literal["boundary_elements"]
+    error: Annotated[float, BeforeValidator(Quantity("1", at_least=_ERRORS[0], at_most=_ERRORS[1]))] = 0.02
+
+    def check(self, scene: Given) -> None:
+        """Raise a mismatch with adhesion, and with other paths."""
+        if scene.work > 0.0:
+            raise mismatch("reference", "does not go with adhesion: boundary elements press without it")
+        if scene.path.control != "separation":
+            instead = "path.separation = { stop = { pressure = ... } } loads to a pressure"
+            raise mismatch("reference", f"goes with path.separation, not with path.{scene.path.key}; {instead}")
+
+    def reason_against(self, estimator: str) -> str:
+        """Return that the expected law has no surface to press."""
+        if estimator != "expected":
+            return ""
+        return "the reference presses single surfaces, which the expected law does not know"
+
+    def check_read(self, scene: Given, ensemble: "Ensemble") -> None:
+        """Raise SceneError where asperities that are read lack positions, or a patch that repeats."""
+        from roughmdr.interaction.placed import sides_of
+
+        if not {"x", "y"} <= ensemble.positions.keys():
+            raise SceneError("reference: boundary elements need x and y [m] of every asperity")
+        if ensemble.origin == "hills" and scene.asperities.source == "file":
+            raise SceneError(
+                "reference: hills in a file do not say how their map looks; give the map, source = 'surface'"
+            )
+        if scene.repeats and sides_of(ensemble) is None:
+            raise SceneError("reference: a surface that repeats needs patch, patch_x and patch_y, or nominal_area")
+
+    def more_variables(self, names: list[str]) -> list[str]:
+        """Return the variables of the reference beside those that are asked for."""
+        beside = {*_ALWAYS, *(f"reference_{name}" for name in names)}
+        return [name for name in REFERENCE_VARIABLES if name in beside]
+
+    def beside(self, scene: Given, separations: int, *, finest: bool) -> tuple[float, float]:
+        """Return about how long [s] and how much memory [byte] the reference of a realisation takes."""
+        from roughmdr.elements.refine import LARGEST_GRID, first_points
+
+        along = LARGEST_GRID if finest else first_points(scene.asperities.expected_count, self.error)
+        points = along**2 * (1.0 if scene.repeats else _ALONE)
+        return separations * (_STEP + _POINT * points), _BYTES * points
+
+    def plan_lines(self, longest: str, finest: str) -> Iterator[str]:
+        """Yield what the reference adds to each run."""
+        yield f"boundary elements beside each realisation, their grid right to {self.error:g};"
+        yield f"few and small contacts need finer grids: in all up to about {longest}, and {finest} for the grids"
+
+    def law(self, scene: Given, contacts: Contacts) -> Law:
+        """Return the law with the variables of the reference, of asperities that were drawn."""
+        if contacts.drawn is None:
+            return contacts.law
+        drawn = contacts.drawn
+
+        def law(path: "Path", names: list[str]) -> "LoadSeparation":
+            from roughmdr.loading.path import LoadingPath
+
+            assert isinstance(path, LoadingPath)  # as ``check`` makes sure
+            asked = [name for name in names if name not in REFERENCE_VARIABLES]
+            return self._beside(contacts.law(path, asked).only(asked), scene, path.separation, drawn)
+
+        return law
+
+    def _beside(self, law: "LoadSeparation", scene: Given, separation: "Floats", drawn: Drawn) -> "LoadSeparation":
+        """Return the law of a realisation with the variables of its reference; NaN where that has no equilibrium."""
+        from roughmdr.elements.refine import errors, solve_to_error
+        from roughmdr.elements.surface import surface_of_asperities, surface_of_map
+
+        ensemble = drawn.ensemble
+        height_map = scene.asperities.height_map(scene.seed, drawn.realization)
+        if height_map is None:
+            surface = surface_of_asperities(ensemble, float(separation.min()), periodic=scene.repeats)
+        else:
+            surface = surface_of_map(height_map, ensemble.height, periodic=scene.repeats)
+        stiffness = not {"stiffness", RADIUS}.isdisjoint(of_contacts(law.variables))
+        found = solve_to_error(surface, separation, scene.effective_modulus, self.error, stiffness=stiffness)
+        numbers = [(step.force, step.area, step.contacts, step.stiffness, step.error) for step in found.steps]
+        force, area, count, slope, error = np.array(numbers).T
+        solved = np.isfinite(error)
+        relative = np.divide(error, force, out=np.where(error > 0.0, 1.0, 0.0), where=(force > 0.0) & solved)
+        patch, radius = ensemble.nominal_area or math.nan, 0.5 * slope / scene.effective_modulus
+        conduction = scene.stage(Conduction)
+        conductances = {} if conduction is None else conduction.conductances(radius)
+        values = {
+            "reference_force": force,
+            "reference_contact_area": area,
+            "reference_contact_count": count,
+            "reference_stiffness": slope,
+            "reference_pressure": force / patch,
+            "reference_contact_fraction": area / patch,
+            "reference_conductance_radius": radius,
+            **{f"reference_{name}": value for name, value in conductances.items()},
+            "reference_error": np.minimum(relative, 1.0),
+        }
+        beside = {name: np.where(solved, values[name], math.nan) for name in self.more_variables(list(law.variables))}
+        remarks = _remarks(float(errors(found).max()), self.error, found.shape, int(np.sum(~solved)))
+        return law._replace(
+            variables=law.variables | beside,
+            reference_points=float(math.prod(found.shape)),
+            warnings=(*law.warnings, *remarks),
+        )
+
+    @classmethod
+    def result_lines(cls, result: Any) -> Iterator[tuple[str, str]]:
+        """Yield how far the mean force is off the reference, where that bears at least ``LIGHT`` of the largest."""
+        name = next(
+            (each for each in ("force", "pressure") if result.holds(each) and result.holds(f"reference_{each}")), None
+        )
+        if name is None:
+            return
+        from roughmdr.elements.refine import LIGHT
+
+        force, reference, error = (result.mean(each)[0] for each in (name, f"reference_{name}", "reference_error"))
+        points = float(np.nanmax(result.variables["reference_points"].values))
+        largest = np.nanmax(reference, axis=-1, initial=0.0)[..., None]
+        told = (reference > 0.0) & (reference >= LIGHT * largest) & np.isfinite(force)
+        if not told.any():
+            missed = "" if float(np.nanmax(error, initial=0.0)) == 0.0 else ", but may have missed light contacts"
+            yield "reference", f"boundary elements found no force along the whole path{missed}"
+            return
+        weight = np.where(largest > 0.0, np.maximum(reference, LIGHT * largest), 1.0)
+        own = float(np.nanmax(error * reference / weight))
+        off = force[told] / reference[told] - 1.0
+        least, most, rms = _percent(off.min(), "+"), _percent(off.max(), "+"), _percent(np.sqrt(np.mean(off * off)))
+        yield (
+            cls.key,
+            f"boundary elements on up to {points:.0f} points, right to about {_percent(own)} %: the mean force of the "
+            f"law differs from theirs by {least} to {most} %, {rms} % r.m.s., where theirs is above "
+            f"{100.0 * LIGHT:g} % of the largest",
+        )
+
+
+def _remarks(error: float, asked: float, shape: tuple[int, int], lost: int) -> list[str]:
+    """Return how far boundary elements fall short."""
+    lines = []
+    nx, ny = shape
+    if math.isinf(error):
+        lines.append(f"reference: {nx} x {ny} points miss the contacts; none of its forces is right")
+    elif error > asked:
+        lines.append(
+            f"reference: {nx} x {ny} points give the force to {error:.2g} only; {asked:g} was asked for, and is out of "
+            "reach of finer grids in about a minute: contacts of few points bear the force"
+        )
+    if lost:
+        lines.append(
+            f"reference: no equilibrium at {lost} steps, where the flat is below the mean height of the surface"
+        )
+    return lines
+
+
+def _percent(share: float, sign: str = "") -> str:
+    """Return a share in per cent with about two digits."""
+    value = 100.0 * share
+    return f"{value:{sign}.0f}" if abs(value) >= 9.95 else f"{value:{sign}.2g}"

@@ -1,0 +1,174 @@
+"""A section of a scene that makes another law of that of its contacts, or adds to it: one class answers for all of it.
+
+A stage is a table of the scene. Whatever the program asks of such a section, it asks through the methods below, each of
+which has an answer for a section that changes nothing. None of them imports physics before it is needed: scenes are
+read without.
+"""
+
+from collections.abc import Callable, Iterator, Mapping
+from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, TypeVar
+
+from roughmdr.schema.quantities import Section
+from roughmdr.stages.given import Given
+
+if TYPE_CHECKING:
+    from roughmdr.aggregate.law import LoadSeparation
+    from roughmdr.ensemble import Ensemble
+    from roughmdr.loading.lateral import Path
+    from roughmdr.numerics.arguments import Floats
+
+Law = Callable[["Path", list[str]], "LoadSeparation"]
+"""A path and the variables asked for -> the law along it, which may have other variables too."""
+AnyStage = TypeVar("AnyStage", bound="Stage")
+
+
+class Drawn(NamedTuple):
+    """The asperities of one realisation."""
+
+    ensemble: "Ensemble"
+    realization: int
+
+
+class Contacts(NamedTuple):
+    """The contacts that a stage makes its law of."""
+
+    law: Law
+    """Their law, with what inner stages made of it."""
+    highest: Callable[[], float]
+    """Return the height of the highest summit [m]; -inf where there is none."""
+    nominal_area: float | None
+    """[m2]"""
+    drawn: Drawn | None = None
+    """The asperities themselves; None of an expected law, and where the law of a part of them is foreseen."""
+
+
+class Stage(Section):
+    """A section that changes the law of a scene. ``roughmdr.stages.STAGES`` lists all, innermost first."""
+
+    key: ClassVar[str]
+    """Name of the section."""
+    about: ClassVar[str]
+    """Line on the section, for editors."""
+    words: ClassVar[Mapping[str, str]]
+    """Line on each of its keys, for editors; those of a list of tables are "LIST[].KEY"."""
+    small_scene: ClassVar[Mapping[str, Any]]
+    """Sections of a small scene that compiles what the section needs."""
+    swept: ClassVar[bool] = True
+    """Whether its keys may be swept."""
+    fitted: ClassVar[bool] = True
+    """Whether its keys may be fitted to a measured normal law."""
+    placed: ClassVar[bool] = False
+    """Whether it needs the positions of the asperities."""
+    flat: ClassVar[bool] = True
+    """Whether a flat presses all asperities alike; else the law is the expected one of a body of its own."""
+    unlike: ClassVar[str] = ""
+    """The difference to elastic contacts under a flat, for which theories and coupling are; empty if there is none."""
+    most_foreseen: ClassVar[int] = 60
+    """Number of steps at most at which the law is foreseen."""
+    more_separations: ClassVar[int] = 0
+    """Number of separations, beside those of the steps, at which the law of the contacts is needed."""
+    own_variables: ClassVar[tuple[str, ...]] = ()
+    """Variables of [output] that a scene without the section does not have."""
+    noted: ClassVar[str] = ""
+    """Attribute of results, and name in summaries, of ``notes``."""
+
+    # the scene
+
+    @classmethod
+    def is_in(cls, table: Mapping[str, Any]) -> bool:
+        """Return whether a scene, as a table, has the section in any of its cells."""
+        return cls.key in table or any(str(key).startswith(f"{cls.key}.") for key in table.get("sweep", {}))
+
+    @classmethod
+    def usual_variables(cls, table: Mapping[str, Any]) -> list[str] | None:
+        """Return the variables of a scene, as a table, whose output names none; None where they are the usual ones."""
+        return None
+
+    @classmethod
+    def check_without(cls, scene: Given) -> None:
+        """Raise a mismatch where a scene without the section needs it."""
+
+    def check(self, scene: Given) -> None:
+        """Raise a mismatch where the scene lacks something that the section needs, or it does not go with another."""
+
+    def alone(self, scene: Given) -> str:
+        """Return the key of what makes another law of the elastic one under a flat, which only one may; else empty."""
+        return ""
+
+    def reason_against(self, estimator: str) -> str:
+        """Return why the estimator "stratified" or "expected" is impossible; empty where it is possible."""
+        return ""
+
+    # the plan
+
+    def check_path(self, values: "Floats") -> None:
+        """Raise SceneError where the section does not go with a path of these values, in SI."""
+
+    def check_read(self, scene: Given, ensemble: "Ensemble") -> None:
+        """Raise SceneError where asperities that are read, not drawn, lack what the section needs."""
+
+    def more_variables(self, names: list[str]) -> list[str]:
+        """Return the variables of the result that the section adds to those of the output."""
+        return []
+
+    def coordinates(self, values: "Floats") -> "dict[str, Floats]":
+        """Return the coordinates over the steps that the section adds to the controlled ``values``, in SI."""
+        return {}
+
+    def clear_above(self, scene: Given) -> float:
+        """Return by how much [m] the start "clear" is higher than without the section."""
+        return 0.0
+
+    @classmethod
+    def left_out(cls, scene: Given, section: Any) -> Iterator[str]:
+        """Yield what is left out, as lines "part: reason", because of the ``section``, or because it is None."""
+        if section is None:
+            yield f"{cls.about_absent}: the scene has no [{cls.key}]"
+
+    about_absent: ClassVar[str] = ""
+    """Part that is left out of a scene without the section."""
+
+    def notes(self, scene: Given) -> Iterator[str]:
+        """Yield what the theory of the section neglects, for ``noted``."""
+        yield from ()
+
+    def coarse(self: AnyStage) -> AnyStage:
+        """Return the section as its law is foreseen: with larger errors, in less time."""
+        return self
+
+    def expected_seconds(self, nodes: int, steps: int, *, adhering: bool) -> float | None:
+        """Return about how long an expected law takes [s] of so many nodes; None where as long as that of a flat."""
+        return None
+
+    def beside(self, scene: Given, separations: int, *, finest: bool) -> tuple[float, float]:
+        """Return about how long [s] and how much memory [byte] the section adds to each realisation.
+
+        That is with the grids it begins with, or with the ``finest``, which few and small contacts may need.
+        """
+        return 0.0, 0.0
+
+    def plan_lines(self, longest: str, finest: str) -> Iterator[str]:
+        """Yield what the section adds to each run, given the time and memory with the ``finest`` grids in words."""
+        yield from ()
+
+    # the law
+
+    def law(self, scene: Given, contacts: Contacts) -> Law:
+        """Return the law of a scene from that of its contacts."""
+        return contacts.law
+
+    # the result
+
+    def attributes(self) -> dict[str, str]:
+        """Return attributes of the result."""
+        return {}
+
+    @classmethod
+    def result_lines(cls, result: Any) -> Iterator[tuple[str, str]]:
+        """Yield what a result, read through ``ResultView``, tells of the section, for its summary."""
+        yield from ()
+
+    @classmethod
+    def papers(cls, table: Mapping[str, Any], variables: list[str]) -> Iterator[tuple[str, str]]:
+        """Yield what a paper is cited for, and its key, of a scene with these variables."""
+        yield from ()
