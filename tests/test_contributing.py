@@ -94,8 +94,53 @@ for batch in ({"realizations": 2}, {"estimator": "expected"}):
 """
 
 
-@pytest.mark.large
-@pytest.mark.parametrize(("section", "code"), [("adhesion model", _DMT), large("curve variable", _PERIMETER)])
+_STIFFENING = """
+import json, subprocess, tomli_w, warnings
+from pathlib import Path
+from click.testing import CliRunner
+from roughmdr.cli import main
+
+def told(*arguments):
+    return CliRunner().invoke(main, list(arguments)).output
+
+plain = scene(adhesion=None, batch={"realizations": 2})
+treated = plain | {"stiffening": {"factor": 1.5, "error": 0.1}}
+treated["output"] = {"variables": ["force", "contact_area", "stiffness", "untreated_force"]}
+before, after = rm.run(plain), rm.run(treated, "out.nc")
+np.testing.assert_array_equal(after.force, 1.5 * before.force)
+np.testing.assert_array_equal(after.untreated_force, before.force)
+np.testing.assert_array_equal(after.contact_area, before.contact_area)
+assert "stiffening.factor is known to 0.1 only" in after.attrs["warnings"]
+assert "stiffer contacts: the scene has no [stiffening]" in before.attrs["left_out"]
+assert "elastic contact of rough spheres" in rm.cite(after)
+expected = [rm.run(table | {"batch": {"estimator": "expected"}}).force for table in (plain, treated)]
+np.testing.assert_allclose(expected[1], 1.5 * expected[0], rtol=1e-15)
+sweep = treated | {"sweep": {"stiffening.factor": [1.0, 1.5]}, "stiffening": {"error": 0.1}}
+swept = rm.run(sweep, "swept.nc")
+assert swept.cell_key[0] != swept.cell_key[1] == after.cell_key
+np.testing.assert_array_equal(swept.force.sel(stiffening_factor=1.5), after.force)
+more = rm.run(sweep | {"sweep": {"stiffening.factor": [1.0, 1.5, 3.0]}}, "swept.nc")
+np.testing.assert_array_equal(more.run_time[:2], swept.run_time)  # they were not computed again
+for wrong, says in (
+    ({"stiffning": {"factor": 2}}, "unknown key; did you mean 'stiffening'?"),
+    ({"stiffening": {}}, "is missing; for example: factor = 1.2"),
+    ({"stiffening": {"factor": -1}}, "stiffening.factor = -1: must be above 0"),
+    ({"adhesion": {"model": "jkr", "work": 0.05}, "stiffening": {"factor": 2}}, "does not go with adhesion"),
+    ({"output": {"variables": ["untreated_force"]}}, "untreated_force needs [stiffening]"),
+):
+    Path("wrong.toml").write_text(tomli_w.dumps(plain | wrong))
+    assert says in told("plan", "wrong.toml"), (says, told("plan", "wrong.toml"))
+schema = json.loads(told("schema"))
+assert schema["properties"]["stiffening"]["properties"]["factor"]["description"].startswith("Force over that without")
+assert "stiffening.factor" in schema["properties"]["sweep"]["properties"]
+assert "contacts that a treatment stiffens" in told("plot", "out.nc", "-o", "out.png", "--with-theory")
+"""
+
+
+@pytest.mark.parametrize(
+    ("section", "code"),
+    [large("adhesion model", _DMT), large("curve variable", _PERIMETER), ("section", _STIFFENING)],
+)
 def test_the_patches_of_the_guide_work(section: str, code: str, tmp_path: Path) -> None:
     shutil.copytree(ROOT / "roughmdr", tmp_path / "roughmdr", ignore=shutil.ignore_patterns("__pycache__"))
     (patch,) = re.findall(

@@ -21,8 +21,6 @@ from roughmdr.errors import RoughmdrError
 from roughmdr.loading.pull_off import PullOff
 from roughmdr.numerics.arguments import Floats
 from roughmdr.scene import Scene
-from roughmdr.stages.conduction import of_contacts
-from roughmdr.stages.slip import normal_variables
 from roughmdr.variables import ADHESION_CODES, DONE, FAILED
 
 _SINGLE_TASK = 0.1  # a batch that takes less [s] is one task: to load dask takes as long
@@ -88,7 +86,9 @@ def split_into_tasks(
 def prepare_all(plan: Plan, ranges: Iterable[RunRange]) -> None:
     """Compile what these runs of a plan need, before several threads or a clock need it, and nothing else."""
     prepared: set[tuple[object, ...]] = set()
-    variables = normal_variables(of_contacts(plan.scene.output.variables))
+    variables = plan.scene.output.variables
+    for stage in reversed(plan.scene.stages):
+        variables = stage.inner_variables(variables)
     for cell, estimator in ((runs.cell, runs.estimator) for runs in ranges):
         scene, path = cell.scene, cell.path
         adhesion, asperities = scene.adhesion_model, scene.asperities

@@ -92,11 +92,15 @@ class Conduction(Stage):
         """Raise a mismatch where a conductance is asked for without what it takes."""
         _check_asked(scene, self.factors)
 
+    def inner_variables(self, names: list[str]) -> list[str]:
+        """Return the variables with the conductance radius in place of conductances."""
+        return of_contacts(names)
+
     def law(self, scene: Given, contacts: Contacts) -> Law:
         """Return the law with the conductances that it is asked for; OutOfRange where one is not representable."""
 
         def law(path: "Path", names: list[str]) -> "LoadSeparation":
-            found = contacts.law(path, of_contacts(names))
+            found = contacts.law(path, self.inner_variables(names))
             if RADIUS not in found.variables:
                 return found
             return found._replace(variables=found.variables | self.conductances(found.variables[RADIUS]))

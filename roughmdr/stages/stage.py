@@ -153,6 +153,10 @@ class Stage(Section):
 
     # the law
 
+    def inner_variables(self, names: list[str]) -> list[str]:
+        """Return the variables of the law of the contacts that these variables follow from."""
+        return names
+
     def law(self, scene: Given, contacts: Contacts) -> Law:
         """Return the law of a scene from that of its contacts."""
         return contacts.law

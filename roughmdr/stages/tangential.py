@@ -128,6 +128,12 @@ class Tangential(Stage):
         assert ratio is not None  # as ``check`` makes sure
         return Constants(scene.effective_modulus, ratio, math.nan if self.friction is None else self.friction)
 
+    def inner_variables(self, names: list[str]) -> list[str]:
+        """Return the variables of the normal law that lateral forces follow from."""
+        from roughmdr.stages.slip import normal_variables
+
+        return normal_variables(names)
+
     def law(self, scene: Given, contacts: Contacts) -> Law:
         """Return the law with lateral forces, where it is asked for them.
 
