@@ -90,7 +90,7 @@ def each(cost: tuple[float, int]) -> float:
 
 def by_the_sum(ensemble: Ensemble, adhesion: Adhesion, repeats: int, rows: set[int], steps: int) -> tuple[float, int]:
     """Return time [s] and visits of the package's sum there and back, all included."""
-    columns, path = ensemble.nondimensional(), np.concatenate([loading(steps), loading(steps)[::-1]])
+    columns, path = ensemble.columns, np.concatenate([loading(steps), loading(steps)[::-1]])
     kernels = choose(ensemble.shape, adhesion, columns[2])
     memory = staircase(path) if adhesion.work else no_memory(path)
 
@@ -188,7 +188,7 @@ def by_shape(count: int, repeats: int) -> xr.Dataset:
     for shape, parameters in SHAPES.items():
         ensemble = ensemble_of(count, shape, **parameters)
         started = time.perf_counter()
-        ensemble.nondimensional()  # for a table: its pieces
+        _ = ensemble.columns  # for a table: its pieces
         profile = time.perf_counter() - started
         state, before, short = split_cost(ensemble, Adhesion(WORK), repeats)
         rows.append((state, before, each(short), each(by_brentq(ensemble)), profile))

@@ -13,6 +13,7 @@ from benchmarks.process import in_new_process
 
 from roughmdr.aggregate import LoadingPath, LoadSeparation, compute
 from roughmdr.aggregate.contacts import update_contact
+from roughmdr.aggregate.problem import Problem
 from roughmdr.aggregate.totals import jumps, jumps_between_branches
 from roughmdr.batch.plan import make_plan
 from roughmdr.ensemble import streams
@@ -77,15 +78,12 @@ def count(
     scene: Scene, path: LoadingPath | None = None, positions: bool = False, **changes: Any
 ) -> tuple[dict[str, float], LoadSeparation]:
     """Compute a realisation as a run does, but for ``changes`` of the arguments, and count what it calls and draws."""
-    arguments: dict[str, Any] = {
-        "effective_modulus": scene.effective_modulus,
-        "adhesion": scene.adhesion_model,
-        "variables": tuple(scene.output.variables),
-        **changes,
-    }
+    adhesion = changes.get("adhesion", scene.adhesion_model)
+    variables = changes.get("variables", scene.output.variables)
     with patch.object(streams, "uniforms", wraps=streams.uniforms) as drawn, cProfile.Profile() as profile:
         ensemble = scene.asperities.ensemble(scene.seed, 0, with_positions=positions)
-        found = compute(ensemble, path or make_plan(scene).cells[0].path, **arguments)
+        problem = Problem(ensemble, scene.effective_modulus, adhesion)
+        found = compute(problem, path or make_plan(scene).cells[0].path, variables)
     calls, for_adhesion = 0, 0
     for code, number, *_ in profile.getstats():
         if not isinstance(code, str):

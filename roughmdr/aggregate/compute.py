@@ -7,19 +7,18 @@ import numpy as np
 
 from roughmdr.aggregate import loop, totals
 from roughmdr.aggregate.detachment import detachments
-from roughmdr.aggregate.law import PER_AREA, LoadSeparation, effective_number
+from roughmdr.aggregate.law import LoadSeparation, effective_number
 from roughmdr.aggregate.loop import sum_over_asperities
 from roughmdr.aggregate.mean_field import couple, coupling_in, of_independent, shift
 from roughmdr.aggregate.neighbours_error import are_few, neighbours_error
+from roughmdr.aggregate.problem import Problem
 from roughmdr.aggregate.tabor import jkr_validity
 from roughmdr.aggregate.totals import AREA, COUNT, FORCE
 from roughmdr.ensemble.ensemble import Ensemble
-from roughmdr.errors import SceneError
-from roughmdr.interaction.placed import check_placed
-from roughmdr.interaction.settings import Interaction, reason_against_adhesion
+from roughmdr.interaction.settings import Interaction
 from roughmdr.kernels.adhesion import Adhesion
 from roughmdr.kernels.choose import choose
-from roughmdr.kernels.interface import Columns, Kernels
+from roughmdr.kernels.interface import Columns
 from roughmdr.loading.path import LoadingPath
 from roughmdr.loading.pull_off import WITHOUT_TENSION, PullOff, locate, unloadings
 from roughmdr.loading.pull_off import prepare as prepare_pull_off
@@ -35,55 +34,39 @@ _UNCOUPLED_HILLS = (
 )
 
 
-def compute(
-    ensemble: Ensemble,
-    path: LoadingPath,
-    *,
-    effective_modulus: float,
-    adhesion: Adhesion,
-    variables: Iterable[str],
-    interaction: Interaction | None = None,
-) -> LoadSeparation:
-    """Return the law of ``ensemble`` along a path; E* [Pa].
+def compute(problem: Problem, path: LoadingPath, variables: Iterable[str]) -> LoadSeparation:
+    """Return the law of an ensemble along a path.
 
     SceneError where a variable needs a nominal area and there is none, or where the ensemble lacks positions or the
-    patch that the interaction needs, OutOfRange where the contact of an asperity is
-    not representable, or where the contacts have more area than the patch.
+    patch that the interaction needs, OutOfRange where the contact of an asperity is not representable, or where the
+    contacts have more area than the patch.
     """
     names = list(variables)
-    check_asked(ensemble, names, adhesion, interaction)
-    if interaction is not None and interaction.model == "pairwise":
+    problem.check_asked(names)
+    if problem.paired:
         from roughmdr.aggregate.coupled import law_of_coupled
 
-        return law_of_coupled(ensemble, path, effective_modulus, adhesion, interaction, names)
-    columns, spread = ensemble.nondimensional(), ensemble.spread
-    validity = jkr_validity(ensemble.shape, spread, columns, effective_modulus, adhesion)
-    adhesion = adhesion.resolved(validity.jkr_error)
-    law = choose(ensemble.shape, adhesion, columns[2])
+        return law_of_coupled(problem, path, names)
+    ensemble, adhesion = problem.ensemble, problem.adhesion
     rows = {totals.ERROR, totals.FORCE, totals.AREA, *(totals.TOTAL_INDEX[name] for name in names)}
     rows |= {totals.COUNT} if are_few(ensemble) else set()
 
-    def sums(along: LoadingPath, rows: set[int]) -> tuple[Floats, Floats, int]:
-        return loop.sum_over_asperities(
-            law, ensemble.height, columns, effective_modulus, adhesion, along.separation, along.memory, rows
-        )
-
     def radius_at(separation: float) -> Floats:
         there = LoadingPath.along(np.array([separation]), unload=False, adhesive=adhesion.work > 0.0)
-        _, (radius, _), _ = sums(there, {totals.AREA})
+        _, (radius, _), _ = problem.sums(there, {totals.AREA})
         return np.asarray(radius)
 
-    if coupling := coupling_in(ensemble, interaction, effective_modulus):
-        independent = of_independent(law, ensemble.height, columns, effective_modulus, adhesion)
-        found = shift(independent, path.separation, coupling)
+    if coupling := coupling_in(problem):
+        found = shift(of_independent(problem), path.separation, coupling)
         shifted = LoadingPath(found.separation, no_memory(found.separation))
-        total, (radius, force), visits = sums(shifted, rows | {totals.STIFFNESS})
+        total, (radius, force), visits = problem.sums(shifted, rows | {totals.STIFFNESS})
         couple(total, found)
     else:
-        total, (radius, force), visits = sums(path, rows)
+        total, (radius, force), visits = problem.sums(path, rows)
     total[totals.AREA] *= ensemble.area_share
     area = math.nan if ensemble.nominal_area is None else ensemble.nominal_area
-    givens = Givens(effective_modulus, adhesion.work, spread, area, float(radius.max(initial=0.0)))
+    modulus, validity = problem.effective_modulus, problem.validity
+    givens = Givens(modulus, adhesion.work, ensemble.spread, area, float(radius.max(initial=0.0)))
     assumptions = Assumptions(
         ensemble.validity_limits(radius),
         np.count_nonzero(radius) * validity.contact_error if adhesion.model == "jkr" and radius.any() else 0.0,
@@ -91,26 +74,15 @@ def compute(
         ensemble.border_error,
         ensemble.origin,
         _overlap(ensemble, radius),
-        neighbours_error=neighbours_error(ensemble, path, total, radius_at) if interaction is None else None,
+        neighbours_error=neighbours_error(ensemble, path, total, radius_at) if problem.interaction is None else None,
     )
     result = LoadSeparation.of(
         total, names, path.separation, givens, assumptions, visits, validity.tabor, adhesion.model
     )
-    pull_off = pull_off_of(law, ensemble.height, columns, effective_modulus, adhesion, path, total[totals.FORCE])
     crowded = crowd_warnings(assumptions.neighbours_error, total[totals.AREA] / area)
     warnings = (*ensemble.warnings, *([_UNCOUPLED_HILLS] if ensemble.origin == "hills" else []), *crowded)
-    effective = effective_number(force)
-    return result._replace(warnings=warnings, pull_off=pull_off, effective_contacts=effective)
-
-
-def check_asked(ensemble: Ensemble, names: list[str], adhesion: Adhesion, interaction: Interaction | None) -> None:
-    """Raise SceneError where an ensemble lacks what variables or the interaction need, or adhesion is against it."""
-    if ensemble.nominal_area is None and not PER_AREA.isdisjoint(names):
-        raise SceneError(f"ensemble: attribute nominal_area is missing; {', '.join(sorted(PER_AREA))} need it")
-    if interaction is not None:
-        check_placed(ensemble, interaction)
-        if reason := reason_against_adhesion(interaction, adhesion):
-            raise SceneError(f"interaction {reason}")
+    pull_off = pull_off_of(problem, path, total[totals.FORCE])
+    return result._replace(warnings=warnings, pull_off=pull_off, effective_contacts=effective_number(force))
 
 
 def _overlap(ensemble: Ensemble, radius: Floats) -> float:
@@ -168,34 +140,23 @@ def prepare(
         jkr_validity(shape, 0.0, columns, 1.0, adhesion._replace(work=1.0, strength=1.0))
 
 
-def pull_off_of(
-    kernels: Kernels,
-    height: Floats,
-    columns: Columns,
-    effective_modulus: float,
-    adhesion: Adhesion,
-    path: LoadingPath,
-    force: Floats,
-) -> PullOff:
-    """Return the pull-off along a path, given the force [N] at its steps; height [m] descends.
+def pull_off_of(problem: Problem, path: LoadingPath, force: Floats) -> PullOff:
+    """Return the pull-off along a path, given the force [N] at its steps.
 
     NaN where no unloading ends with all contacts parted: there, and only there, the force is exactly 0.
     """
     rises = unloadings(path.separation, force)
     if not any(rise.force[-1] == 0.0 for rise in rises):
         return PullOff()
-    closest = float(path.separation.min()) - adhesion.range
-    count = int(np.count_nonzero(height >= closest))
-    if not (kernels.adhesive and count):
+    adhesion = problem.adhesion
+    count = int(np.count_nonzero(problem.ensemble.height >= float(path.separation.min()) - adhesion.range))
+    if not (problem.kernels.adhesive and count):
         return WITHOUT_TENSION
-    top, few = height[:count], Columns(*(column[:count] for column in columns))
-    depths = detachments(kernels, few, effective_modulus, adhesion).depth
+    top, few, depths = problem.highest(count)
 
     def sums(along: LoadingPath, rows: set[int]) -> Floats:
-        total, _, _ = sum_over_asperities(
-            kernels, top, few, effective_modulus, adhesion, along.separation, along.memory, rows
-        )
-        return total
+        own = problem.kernels, top, few, problem.effective_modulus, adhesion
+        return sum_over_asperities(*own, along.separation, along.memory, rows)[0]
 
     found = locate(rises, lambda along: sums(along, {FORCE})[FORCE], np.sort(top + depths))
     if found is None:

@@ -9,12 +9,11 @@ from numpy.typing import NDArray
 
 from roughmdr.aggregate import totals
 from roughmdr.aggregate.law import LoadSeparation, effective_number
-from roughmdr.aggregate.tabor import JkrValidity, jkr_validity
+from roughmdr.aggregate.problem import Problem
 from roughmdr.ensemble.ensemble import Ensemble
 from roughmdr.errors import SceneError
 from roughmdr.interaction.settings import Interaction
 from roughmdr.interaction.totals import CROWDING
-from roughmdr.kernels.adhesion import Adhesion
 from roughmdr.loading.machine import MachinePath
 from roughmdr.loading.path import LoadingPath
 from roughmdr.loading.pull_off import PullOff
@@ -67,30 +66,14 @@ class CoupledTotals(NamedTuple):
     """Sizes of the avalanches; None without adhesion."""
 
 
-def law_of_coupled(
-    ensemble: Ensemble,
-    path: LoadingPath,
-    effective_modulus: float,
-    adhesion: Adhesion,
-    interaction: Interaction,
-    names: list[str],
-) -> LoadSeparation:
+def law_of_coupled(problem: Problem, path: LoadingPath, names: list[str]) -> LoadSeparation:
     """Return the law of asperities that feel each other in pairs; SceneError where a variable is not to be had."""
-    separation = path.separation
-    validity = jkr_validity(ensemble.shape, ensemble.spread, ensemble.nondimensional(), effective_modulus, adhesion)
-    judged, reach = _judged(ensemble, names), _reach(ensemble, validity)
-    found = sum_coupled(ensemble, separation, effective_modulus, interaction, judged, adhesion.work, reach)
-    return _law(ensemble, found, separation, effective_modulus, adhesion, names, validity)
+    judged, reach = _judged(problem.ensemble, names), _reach(problem)
+    return _law(problem, sum_coupled(problem, path.separation, judged, reach), path.separation, names)
 
 
 def law_on_machine(
-    ensemble: Ensemble,
-    path: MachinePath,
-    effective_modulus: float,
-    adhesion: Adhesion,
-    interaction: Interaction,
-    names: list[str],
-    clear: float,
+    problem: Problem, path: MachinePath, names: list[str], clear: float
 ) -> tuple[LoadSeparation, Floats]:
     """Return the law of adhesive asperities that feel each other in pairs, on a machine, and the separations [m].
 
@@ -98,16 +81,17 @@ def law_on_machine(
     """
     from roughmdr.interaction.jkr.machine import solve_on_machine
 
-    validity = jkr_validity(ensemble.shape, ensemble.spread, ensemble.nondimensional(), effective_modulus, adhesion)
-    judged, reach = set(_judged(ensemble, names)), _reach(ensemble, validity)
-    along = solve_on_machine(ensemble, path, effective_modulus, adhesion.work, interaction, judged, clear, reach)
-    found = _adhering(ensemble, along.separation, interaction, along)
-    return _law(ensemble, found, along.separation, effective_modulus, adhesion, names, validity), along.separation
+    assert problem.interaction is not None
+    judged, work = set(_judged(problem.ensemble, names)), problem.asked.work
+    given = problem.ensemble, path, problem.effective_modulus, work, problem.interaction
+    along = solve_on_machine(*given, judged, clear, _reach(problem))
+    found = _adhering(problem.ensemble, along.separation, problem.interaction, along)
+    return _law(problem, found, along.separation, names), along.separation
 
 
-def _reach(ensemble: Ensemble, validity: JkrValidity) -> float:
+def _reach(problem: Problem) -> float:
     """Return the reach of attraction that the error of hills needs; 0 of others."""
-    return validity.reach if ensemble.origin == "hills" else 0.0
+    return problem.validity.reach if problem.ensemble.origin == "hills" else 0.0
 
 
 def _judged(ensemble: Ensemble, names: list[str]) -> list[str]:
@@ -115,17 +99,10 @@ def _judged(ensemble: Ensemble, names: list[str]) -> list[str]:
     return names if ensemble.origin == "hills" else [*names, CROWDING]
 
 
-def _law(
-    ensemble: Ensemble,
-    found: CoupledTotals,
-    separation: Floats,
-    effective_modulus: float,
-    adhesion: Adhesion,
-    names: list[str],
-    validity: JkrValidity,
-) -> LoadSeparation:
+def _law(problem: Problem, found: CoupledTotals, separation: Floats, names: list[str]) -> LoadSeparation:
     """Return the law with these totals at separations [m]."""
-    work, spread = adhesion.work, ensemble.spread
+    ensemble, validity = problem.ensemble, problem.validity
+    work, spread, effective_modulus = problem.asked.work, ensemble.spread, problem.effective_modulus
     area = math.nan if ensemble.nominal_area is None else ensemble.nominal_area
     givens = Givens(effective_modulus, work, spread, area, float(found.radius.max(initial=0.0)))
     assumptions = Assumptions(
@@ -155,16 +132,11 @@ def _law(
     )
 
 
-def sum_coupled(
-    ensemble: Ensemble,
-    separation: Floats,
-    effective_modulus: float,
-    interaction: Interaction,
-    names: list[str],
-    work: float,
-    reach: float = 0.0,
-) -> CoupledTotals:
-    """Return totals at separations [m], w [J/m2], ``reach`` as ``Account``; SceneError where a variable is not had."""
+def sum_coupled(problem: Problem, separation: Floats, names: list[str], reach: float = 0.0) -> CoupledTotals:
+    """Return totals at separations [m], ``reach`` as ``Account``; SceneError where a variable is not had."""
+    interaction, work = problem.interaction, problem.asked.work
+    assert interaction is not None
+    ensemble, effective_modulus = problem.ensemble, problem.effective_modulus
     if work > 0.0:
         from roughmdr.interaction.jkr import path
 
@@ -181,19 +153,19 @@ def sum_coupled(
     return found
 
 
-def response_of_coupled(
-    ensemble: Ensemble, effective_modulus: float, interaction: Interaction
-) -> Callable[[float], tuple[float, float]]:
+def response_of_coupled(problem: Problem) -> Callable[[float], tuple[float, float]]:
     """Return force [N] and stiffness [N/m] of contacts without adhesion as a function of the separation [m], which is
     asked for one after the other; NaN where there is no equilibrium.
     """
     from roughmdr.interaction.solve import Flat
 
-    flat = Flat(ensemble, effective_modulus, interaction, {"stiffness"})
+    ensemble, interaction = problem.ensemble, problem.interaction
+    assert interaction is not None
+    flat = Flat(ensemble, problem.effective_modulus, interaction, {"stiffness"})
 
     def law(h: float) -> tuple[float, float]:
         if interaction.beyond == "boundary_elements":
-            total = sum_coupled(ensemble, np.array([h]), effective_modulus, interaction, ["stiffness"], 0.0).total
+            total = sum_coupled(problem, np.array([h]), ["stiffness"]).total
         else:
             total, _ = _totals([flat.go(h)[0]], ensemble)
         return float(total[totals.FORCE, 0]), float(total[totals.STIFFNESS, 0])

@@ -1,21 +1,16 @@
-"""Where the contacts of an ensemble detach under fixed grips, and from where on the flat touches and attracts none."""
+"""Where the contacts of an ensemble detach under fixed grips."""
 
-import math
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from roughmdr.aggregate.block import prepare_of
-from roughmdr.ensemble.ensemble import Ensemble
 from roughmdr.kernels.adhesion import Adhesion
-from roughmdr.kernels.choose import choose
 from roughmdr.kernels.interface import Columns, Kernels, Material, law
 from roughmdr.numerics.arguments import Floats
 from roughmdr.numerics.jit import once, specialise
 from roughmdr.numerics.summation import BLOCK
-
-_MARGIN = 1e-9  # of the depth of detachment, at which a contact still holds
 
 
 class Detachments(NamedTuple):
@@ -53,24 +48,3 @@ def detachments(kernels: Kernels, columns: Columns, effective_modulus: float, ad
     material = kernels.material(effective_modulus, adhesion)
     _compiled(kernels.of_any or kernels)(columns, material, prepare_of(kernels, columns, material), found)
     return found
-
-
-def clear_separation(ensemble: Ensemble, effective_modulus: float, adhesion: Adhesion) -> float:
-    """Return a separation [m] just above that at which any asperity is in contact, or attracts; E* [Pa].
-
-    There a flat that rises has left all of them. NaN where the contact of an asperity is not representable.
-    """
-    height = ensemble.height
-    highest = float(height.max())
-    if adhesion.work == 0.0:
-        return highest
-    columns, last = ensemble.nondimensional(), highest
-    for model in adhesion.candidates:
-        one = adhesion._replace(model=model)
-        with np.errstate(all="ignore"):  # what no float can hold is NaN
-            depths = detachments(choose(ensemble.shape, one, columns.params), columns, effective_modulus, one).depth
-            if not ((depths > 0.0) & (depths < math.inf)).all():
-                return math.nan
-            found = float(np.max(height + (1.0 + _MARGIN) * np.maximum(depths, one.range)))
-        last = max(last, found) if found < math.inf else math.nan
-    return math.nextafter(last, math.inf)

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from roughmdr.aggregate.path_argument import LawArguments, path_of
+from roughmdr.aggregate.problem import Problem
 from roughmdr.aggregate.simulate import simulate
 from roughmdr.ensemble.ensemble import Ensemble
 from roughmdr.errors import OutOfRange, RoughmdrError, SceneError, warn_limits
@@ -123,14 +124,8 @@ def load_separation(
             raise SceneError(f"variables: {name!r} needs the [conduction] of a scene; ask for conductance_radius")
         if name not in CURVE_VARIABLES:
             raise SceneError(f"variables: {name!r} is not available; there are {', '.join(CURVE_VARIABLES)}")
-    result = simulate(
-        asperities,
-        path,
-        effective_modulus=effective_modulus,
-        adhesion=asked,
-        interaction=coupling,
-        variables=names if isinstance(path, LoadingPath) else path.variables(names),
-    )
+    problem = Problem(asperities, effective_modulus, asked, coupling)
+    result = simulate(problem, path, names if isinstance(path, LoadingPath) else path.variables(names))
     data = {name: Array(("step",), values, LAW_VARIABLES[name].attrs) for name, values in result.variables.items()}
     errors = {"numerical_error": result.numerical_error, **result.model_error.named}
     errors["effective_contacts"] = result.effective_contacts

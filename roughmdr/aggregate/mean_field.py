@@ -10,15 +10,14 @@ from typing import NamedTuple
 
 import numpy as np
 
-from roughmdr.aggregate.loop import sum_over_asperities
+from roughmdr.aggregate.problem import Problem
 from roughmdr.aggregate.totals import CONDUCTANCE, ENERGY, ERROR, FORCE, STIFFNESS
 from roughmdr.ensemble.ensemble import Ensemble
 from roughmdr.ensemble.gaussian.section import SUMMIT_DISTANCE
 from roughmdr.errors import OutOfRange
 from roughmdr.interaction.placed import sides_of
 from roughmdr.interaction.settings import Interaction
-from roughmdr.kernels.adhesion import Adhesion
-from roughmdr.kernels.interface import Columns, Kernels
+from roughmdr.loading.path import LoadingPath
 from roughmdr.loading.staircase import no_memory
 from roughmdr.numerics.arguments import Floats
 
@@ -75,12 +74,12 @@ def exclusion_of(ensemble: Ensemble) -> float:
     return SUMMIT_DISTANCE * math.sqrt(ensemble.nominal_area / ensemble.height.size)
 
 
-def coupling_in(ensemble: Ensemble, interaction: Interaction | None, effective_modulus: float) -> float:
+def coupling_in(problem: Problem) -> float:
     """Return c [m/N] of the mean field of an ensemble, whose patch is known; 0 for none."""
-    sides = sides_of(ensemble)
+    interaction, sides = problem.interaction, sides_of(problem.ensemble)
     if interaction is None or interaction.model != "mean_field" or sides is None:
         return 0.0
-    return coupling_of(interaction, effective_modulus, sides, exclusion_of(ensemble))
+    return coupling_of(interaction, problem.effective_modulus, sides, exclusion_of(problem.ensemble))
 
 
 class Shift(NamedTuple):
@@ -121,14 +120,11 @@ def shift(independent: ForceAndStiffness, separation: Floats, coupling: float) -
     raise OutOfRange("interaction.model = 'mean_field': no equilibrium was found")
 
 
-def of_independent(
-    kernels: Kernels, height: Floats, columns: Columns, effective_modulus: float, adhesion: Adhesion
-) -> ForceAndStiffness:
-    """Return force and stiffness of independent asperities without memory as a function of separations; E* [Pa]."""
-    given = kernels, height, columns, effective_modulus, adhesion
+def of_independent(problem: Problem) -> ForceAndStiffness:
+    """Return force and stiffness of independent asperities without memory as a function of separations."""
 
     def law(separation: Floats) -> tuple[Floats, Floats]:
-        found, _, _ = sum_over_asperities(*given, separation, no_memory(separation), {FORCE, STIFFNESS})
+        found, _, _ = problem.sums(LoadingPath(separation, no_memory(separation)), {FORCE, STIFFNESS})
         return found[FORCE], found[STIFFNESS]
 
     return law

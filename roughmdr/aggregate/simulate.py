@@ -4,18 +4,13 @@ from collections.abc import Callable, Iterable
 
 import numpy as np
 
-from roughmdr.aggregate.compute import check_asked, compute
-from roughmdr.aggregate.detachment import clear_separation
+from roughmdr.aggregate.compute import compute
 from roughmdr.aggregate.law import LoadSeparation
 from roughmdr.aggregate.mean_field import ForceAndStiffness, coupling_in, of_independent, shift
 from roughmdr.aggregate.preload import Specimen, to_preload
-from roughmdr.aggregate.tabor import jkr_validity
+from roughmdr.aggregate.problem import Problem
 from roughmdr.aggregate.under_machine import separations_of
-from roughmdr.ensemble.ensemble import Ensemble
 from roughmdr.errors import OutOfRange
-from roughmdr.interaction.settings import Interaction
-from roughmdr.kernels.adhesion import Adhesion
-from roughmdr.kernels.choose import choose
 from roughmdr.loading import steady_passage
 from roughmdr.loading.machine import FIXED_GRIPS, Jump, Machine, MachinePath
 from roughmdr.loading.path import LoadingPath
@@ -27,51 +22,33 @@ OF_MACHINE = {"separation", "remote"}
 _OF_ERROR = 0.1  # error of the force that is borne, over that asked for of coupled contacts
 
 
-def simulate(
-    ensemble: Ensemble,
-    path: LoadingPath | MachinePath,
-    *,
-    effective_modulus: float,
-    adhesion: Adhesion,
-    variables: Iterable[str],
-    interaction: Interaction | None = None,
-) -> LoadSeparation:
-    """Return the law of an ensemble along a path; E* [Pa]. Under a machine it has the separation as a variable too.
+def simulate(problem: Problem, path: LoadingPath | MachinePath, variables: Iterable[str]) -> LoadSeparation:
+    """Return the law of an ensemble along a path. Under a machine it has the separation as a variable too.
 
     That is NaN where a dead load has pulled the flat off. Errors as ``compute``.
     """
     names = list(variables)
-
-    def along(path: LoadingPath, names: list[str]) -> LoadSeparation:
-        return compute(
-            ensemble,
-            path,
-            effective_modulus=effective_modulus,
-            adhesion=adhesion,
-            variables=names,
-            interaction=interaction,
-        )
-
     if isinstance(path, LoadingPath):
-        return along(path, names)
-    check_asked(ensemble, [name for name in names if name not in OF_MACHINE], adhesion, interaction)
-    clear = clear_separation(ensemble, effective_modulus, adhesion) if ensemble.height.size else 0.0
+        return compute(problem, path, names)
+    problem.check_asked([name for name in names if name not in OF_MACHINE])
+    ensemble = problem.ensemble
+    clear = problem.clear if ensemble.height.size else 0.0
 
     def under(path: MachinePath, names: list[str]) -> LoadSeparation:
         of_contacts = [name for name in names if name not in OF_MACHINE]
-        if interaction is not None and adhesion.work > 0.0 and path.machine != FIXED_GRIPS:
+        if problem.interaction is not None and problem.asked.work > 0.0 and path.machine != FIXED_GRIPS:
             from roughmdr.aggregate.coupled import law_on_machine
 
-            law, separation = law_on_machine(
-                ensemble, path, effective_modulus, adhesion, interaction, of_contacts, clear
-            )
+            law, separation = law_on_machine(problem, path, of_contacts, clear)
             return _with_place(law, separation, path).only(names)
         lossy = not LOSSES.isdisjoint(names)
-        separation, jumps = _separations(ensemble, path, effective_modulus, adhesion, interaction, jumps=lossy)
+        separation, jumps = _separations(problem, path, jumps=lossy)
         way = np.where(np.isinf(separation), clear, separation)
-        law = _with_place(along(_way(way, path), of_contacts), separation, path)
+        law = _with_place(compute(problem, _way(way, path), of_contacts), separation, path)
         if jumps and lossy:
-            lost = machine_loss(path.machine, jumps, way, clear, lambda h, names: along(_way(h, path), names))
+            lost = machine_loss(
+                path.machine, jumps, way, clear, lambda h, names: compute(problem, _way(h, path), names)
+            )
             variables = {name: law.variables[name] + lost for name in LOSSES.intersection(names)}
             law = law._replace(variables=law.variables | variables)
         return law.only(names)
@@ -79,9 +56,7 @@ def simulate(
     if path.preload is not None:
         if not ensemble.height.size:
             raise OutOfRange("path: without asperities no preload is reached")
-        depth = ensemble.spread or float(ensemble.nondimensional().rise[0])
-        coupled = interaction is not None and interaction.model == "pairwise"
-        path = to_preload(path, Specimen(under, clear, depth, ensemble.nominal_area, coupled))
+        path = to_preload(path, Specimen(under, clear, problem.depth, ensemble.nominal_area, problem.paired))
     return under(path, names)
 
 
@@ -96,44 +71,30 @@ def _way(separation: Floats, path: MachinePath) -> LoadingPath:
     return LoadingPath.along(separation, unload=False, adhesive=path.adhesive)
 
 
-def _separations(
-    ensemble: Ensemble,
-    path: MachinePath,
-    effective_modulus: float,
-    adhesion: Adhesion,
-    interaction: Interaction | None,
-    *,
-    jumps: bool,
-) -> tuple[Floats, list[Jump]]:
+def _separations(problem: Problem, path: MachinePath, *, jumps: bool) -> tuple[Floats, list[Jump]]:
     """Return the separation at each step of a machine, and its jumps; inf where a dead load has pulled the flat off.
 
     Asperities that feel each other must not adhere.
     """
     if path.machine == FIXED_GRIPS:
         return path.demand, []
-    columns = ensemble.nondimensional()
-    validity = jkr_validity(ensemble.shape, ensemble.spread, columns, effective_modulus, adhesion)
-    adhesion = adhesion.resolved(validity.jkr_error)
-    kernels = choose(ensemble.shape, adhesion, columns.params)
-
-    given = kernels, ensemble.height, columns, effective_modulus, adhesion
+    height, interaction = problem.ensemble.height, problem.interaction
 
     def independent(machine: Machine) -> tuple[Floats, list[Jump]]:
-        return separations_of(*given, machine, path.demand, jumps=jumps)
+        return separations_of(problem, machine, path.demand, jumps=jumps)
 
-    if interaction is None or not ensemble.height.size:
+    if interaction is None or not height.size:
         return independent(path.machine)
     if interaction.model == "mean_field":
-        coupling = coupling_in(ensemble, interaction, effective_modulus)
+        coupling = coupling_in(problem)
         if path.machine.is_dead_load:
             return np.asarray(independent(path.machine)[0] + coupling * path.demand), []  # the force is known
-        return _under_mean_field(of_independent(*given), path, coupling), []
+        return _under_mean_field(of_independent(problem), path, coupling), []
     from roughmdr.aggregate.coupled import response_of_coupled
 
-    law = response_of_coupled(ensemble, effective_modulus, interaction)
-    highest, depth = float(ensemble.height[0]), ensemble.spread or float(columns.rise[0])
-    error = _OF_ERROR * interaction.error
-    return steady_passage.separations_of(law, path.demand, path.machine, highest, depth, error), []
+    law, error = response_of_coupled(problem), _OF_ERROR * interaction.error
+    given = path.demand, path.machine, float(height[0]), problem.depth, error
+    return steady_passage.separations_of(law, *given), []
 
 
 def _under_mean_field(independent: ForceAndStiffness, path: MachinePath, coupling: float) -> Floats:

@@ -1,11 +1,12 @@
 """The least Tabor number of an ensemble, and the error of JKR there."""
 
 import math
+from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
 
-from roughmdr.aggregate.detachment import detachments
+from roughmdr.aggregate.detachment import Detachments, detachments
 from roughmdr.kernels.adhesion import Adhesion, tabor_number
 from roughmdr.kernels.choose import choose
 from roughmdr.kernels.interface import Columns
@@ -56,11 +57,17 @@ class JkrValidity(NamedTuple):
 
 
 def jkr_validity(
-    shape: str, spread: float, columns: Columns, effective_modulus: float, adhesion: Adhesion
+    shape: str,
+    spread: float,
+    columns: Columns,
+    effective_modulus: float,
+    adhesion: Adhesion,
+    detached: Callable[[], Detachments] | None = None,
 ) -> JkrValidity:
     """Return how far JKR is off; its Tabor number is 0 where a contact is not representable in JKR.
 
-    ``spread`` is the standard deviation of the heights [m].
+    ``spread`` is the standard deviation of the heights [m]; ``detached`` returns where the contacts detach under JKR,
+    if that is known already.
     """
     if not adhesion.tabor_known:
         assumed = adhesion._replace(strength=adhesion.work / ASSUMED_RANGE)
@@ -68,8 +75,12 @@ def jkr_validity(
             return JkrValidity()
         usual = Columns(*(np.quantile(column, 0.5, axis=0, method="lower")[None] for column in columns))
         return jkr_validity(shape, spread, usual, effective_modulus, assumed)._replace(tabor=math.inf)
-    kernels = choose(shape, Adhesion(adhesion.work), columns.params)
-    depths, radii = detachments(kernels, columns, effective_modulus, Adhesion(adhesion.work))
+    if detached is None:
+        jkr = Adhesion(adhesion.work)
+        kernels = choose(shape, jkr, columns.params)
+        depths, radii = detachments(kernels, columns, effective_modulus, jkr)
+    else:
+        depths, radii = detached()
     radius, depth = float(radii.min(initial=math.inf)), float(depths.max(initial=0.0))
     if not 0.0 < radius < math.inf:
         return JkrValidity(0.0, math.inf, math.inf)

@@ -6,15 +6,14 @@ import numpy as np
 
 from roughmdr.aggregate import machine_stand, response
 from roughmdr.aggregate.block import SumKernels
-from roughmdr.aggregate.detachment import detachments
 from roughmdr.aggregate.loop import compiled_sum
 from roughmdr.aggregate.machine_jumps import record, through_jumps
 from roughmdr.aggregate.machine_stand import Jumps, Search, Stand, stand_at
 from roughmdr.aggregate.passage import passage, sink
+from roughmdr.aggregate.problem import Problem
 from roughmdr.aggregate.response import stand
 from roughmdr.errors import OutOfRange
-from roughmdr.kernels.adhesion import Adhesion
-from roughmdr.kernels.interface import Columns, Kernels
+from roughmdr.kernels.interface import Kernels
 from roughmdr.loading.machine import Jump, Machine, legs_of
 from roughmdr.loading.staircase import staircase
 from roughmdr.numerics.arguments import Floats
@@ -37,29 +36,21 @@ def _compiled(kernels: Kernels) -> SumKernels:
 
 
 def separations_of(
-    kernels: Kernels,
-    height: Floats,
-    columns: Columns,
-    effective_modulus: float,
-    adhesion: Adhesion,
-    machine: Machine,
-    demand: Floats,
-    *,
-    jumps: bool = False,
+    problem: Problem, machine: Machine, demand: Floats, *, jumps: bool = False
 ) -> tuple[Floats, list[Jump]]:
     """Return the separation [m] at each demand of a machine whose flat comes from infinity; inf where it has flown off.
 
-    Return its ``jumps`` too if they are asked for. height [m] descends. OutOfRange where a contact is not
-    representable.
+    Return its ``jumps`` too if they are asked for. OutOfRange where a contact is not representable.
     """
-    found = list[Jump]()
+    found, height, adhesion = list[Jump](), problem.ensemble.height, problem.adhesion
     if not height.size:
         return (demand if machine.weight > 0.0 else np.full(demand.size, np.inf)), found
-    material = kernels.material(effective_modulus, adhesion)
+    kernels, columns = problem.kernels, problem.ensemble.columns
+    material = kernels.material(problem.effective_modulus, adhesion)
     touches = releases = _NONE
     release = height
     if kernels.adhesive:
-        release = height + detachments(kernels, columns, effective_modulus, adhesion).depth
+        release = height + problem.detachments(adhesion).depth
         touches, releases = np.sort(height + adhesion.range), np.sort(release)
     asperities = response.keep(height, columns, material, adhesion.range, release, kernels.prepare)
     law = _compiled(kernels)
@@ -88,7 +79,7 @@ def separations_of(
         if np.isnan(filled).any():
             raise OutOfRange(
                 f"the contact of an asperity is not representable: {kernels.name} with "
-                f"effective modulus {effective_modulus:g} Pa, {adhesion}"
+                f"effective modulus {problem.effective_modulus:g} Pa, {adhesion}"
             )
         found += [
             Jump(leg.first + int(room.step[i]), float(room.demand[i]), *room.limits[i].tolist())

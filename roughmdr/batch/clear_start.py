@@ -8,7 +8,7 @@ what is drawn nor on how many of these realisations there are.
 
 import math
 
-from roughmdr.aggregate.detachment import clear_separation
+from roughmdr.aggregate import Problem
 from roughmdr.errors import Fault, SceneError
 from roughmdr.scene import Scene
 from roughmdr.scene.separation import CLEAR
@@ -38,7 +38,7 @@ def clear_start(scene: Scene) -> float:
 
 def _exceeded(scene: Scene, chance: float) -> float:
     """Return the separation [m] that is clear of all asperities but those more extreme than this chance."""
-    return clear_separation(scene.asperities.extremes(chance), scene.effective_modulus, scene.adhesion_model)
+    return Problem(scene.asperities.extremes(chance), scene.effective_modulus, scene.adhesion_model).clear
 
 
 def _fault(message: str) -> SceneError:

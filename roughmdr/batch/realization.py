@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 
-from roughmdr.aggregate import LoadSeparation, simulate
+from roughmdr.aggregate import LoadSeparation, Problem, simulate
 from roughmdr.ensemble import Ensemble
 from roughmdr.loading.lateral import LateralPath, Path
 from roughmdr.loading.machine import MachinePath
@@ -21,17 +21,11 @@ def simulate_ensemble(
 
     ``realization`` is its number where it is all that is drawn for it, so that stages may compute more beside it.
     """
+    problem = Problem(ensemble, scene.effective_modulus, scene.adhesion_model, scene.interaction_model)
 
     def law(path: Path, names: list[str]) -> LoadSeparation:
         assert not isinstance(path, LateralPath)  # which a stage resolves
-        return simulate(
-            ensemble,
-            path,
-            effective_modulus=scene.effective_modulus,
-            adhesion=scene.adhesion_model,
-            interaction=scene.interaction_model,
-            variables=names,
-        )
+        return simulate(problem, path, names)
 
     def highest() -> float:
         return float(ensemble.height.max(initial=-np.inf))

@@ -28,7 +28,7 @@ def target_stop(scene: Scene, target: Target, start: float) -> float:
     if scene.asperities.nominal_area is None:
         raise _fault(target, "needs a nominal area, which these asperities do not have")
     middle = scene.asperities.extremes(0.5)
-    distances = (start - float(np.median(middle.height)), _FIRST * float(middle.nondimensional().width.max()))
+    distances = (start - float(np.median(middle.height)), _FIRST * float(middle.columns.width.max()))
     scene, pairwise = scene.without_grid, scene.interaction_model if scene.needs_positions else None
     rtol = _RTOL if pairwise is None else pairwise.error
     try:

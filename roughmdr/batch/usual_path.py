@@ -2,8 +2,7 @@
 
 import numpy as np
 
-from roughmdr.aggregate import LoadingPath, simulate
-from roughmdr.aggregate.detachment import clear_separation
+from roughmdr.aggregate import LoadingPath, Problem, simulate
 from roughmdr.errors import Fault, RoughmdrError, SceneError
 from roughmdr.loading.machine import MachinePath
 from roughmdr.numerics.arguments import Floats
@@ -32,19 +31,13 @@ def usual_path(cell: Scene, machine: MachinePath) -> LoadingPath:
 
     SceneError where there is none.
     """
-    source, adhesion = cell.asperities, cell.adhesion_model
+    source = cell.asperities
     stratified = source.is_random and not source.reason_against("stratified")
     ensemble = source.ensemble(cell.seed, 0, stratified=stratified)
+    problem = Problem(ensemble, cell.effective_modulus, cell.adhesion_model)
     try:
-        law = simulate(
-            ensemble,
-            machine,
-            effective_modulus=cell.effective_modulus,
-            adhesion=adhesion,
-            variables=["separation"],
-        )
+        law = simulate(problem, machine, ["separation"])
     except RoughmdrError as error:
         raise SceneError.of([Fault(f"path.{cell.path.key}", "", f"cannot be followed: {error}")]) from error
-    clear = clear_separation(ensemble, cell.effective_modulus, adhesion)
-    separation = np.where(np.isnan(law.variables["separation"]), clear, law.variables["separation"])
+    separation = np.where(np.isnan(law.variables["separation"]), problem.clear, law.variables["separation"])
     return LoadingPath.along(separation, unload=False, adhesive=machine.adhesive)

@@ -1,6 +1,7 @@
 """An ensemble of asperities: plain arrays inside, an xarray dataset outside."""
 
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
@@ -107,8 +108,9 @@ class Ensemble:
         with np.errstate(all="ignore"):  # where no float holds their squares, JKR is not taken for right
             return float(np.std(self.height - self.height[0])) if self.height.size else 0.0
 
-    def nondimensional(self) -> Columns:
-        """Return width [m], rise [m] and params [1] of each asperity; of a shared profile one row of params."""
+    @cached_property
+    def columns(self) -> Columns:
+        """Width [m], rise [m] and params [1] of each asperity; of a shared profile one row of params."""
         if self.shared_profile is None:
             with np.errstate(all="ignore"):  # what no float can hold is refused where contacts are looked for
                 return Columns(*SHAPES[self.shape].nondimensionalise(self.parameters))
@@ -133,7 +135,7 @@ class Ensemble:
         if self.shared_profile is not None:
             return self.shared_profile.df(radius)
         with np.errstate(all="ignore"):  # a slope that no float can hold is infinite
-            return SHAPES[self.shape].slopes(self.nondimensional(), radius)
+            return SHAPES[self.shape].slopes(self.columns, radius)
 
     def labelled(self) -> Labelled:
         """Return the arrays over ``asperity``, with their units."""

@@ -62,7 +62,7 @@ def compute(
     rows, unjudged = _rows(names)
     dissipating = any(TOTAL_INDEX[name] == DISSIPATED for name in names)
     coarse = as_ensemble(source, source.nodes(Rule.smooth(FIRST_ORDER)))
-    validity = jkr_validity(source.shape_name, source.sigma, coarse.nondimensional(), effective_modulus, adhesion)
+    validity = jkr_validity(source.shape_name, source.sigma, coarse.columns, effective_modulus, adhesion)
     problem = Problem(source, path, effective_modulus, adhesion.resolved(validity.jkr_error), rows, unjudged)
     found = _shift(problem, interaction)
     if found is not None:
@@ -137,7 +137,7 @@ def force_of_equal_shapes(
     Force and error are those of ``compute``; E* [Pa]. OutOfRange where a contact is not representable.
     """
     if len(adhesion.candidates) > 1:
-        one = as_ensemble(source, source.nodes(Rule.smooth(1))).nondimensional()
+        one = as_ensemble(source, source.nodes(Rule.smooth(1))).columns
         validity = jkr_validity(source.shape_name, source.sigma, one, effective_modulus, adhesion)
         adhesion = adhesion.resolved(validity.jkr_error)
     nodes = set_up(Problem(source, path, effective_modulus, adhesion, (FORCE,)), Rule.smooth(1))

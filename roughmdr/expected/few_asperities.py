@@ -67,7 +67,7 @@ def few_asperities(
     validity = jkr_validity(
         source.shape_name,
         source.sigma,
-        as_ensemble(source, source.nodes(Rule.smooth(_ORDERS[-1]))).nondimensional(),
+        as_ensemble(source, source.nodes(Rule.smooth(_ORDERS[-1]))).columns,
         effective_modulus,
         adhesion,
     )

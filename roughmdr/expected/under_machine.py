@@ -4,8 +4,7 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from roughmdr.aggregate import LoadingPath, LoadSeparation
-from roughmdr.aggregate.detachment import clear_separation
+from roughmdr.aggregate import LoadingPath, LoadSeparation, Problem
 from roughmdr.aggregate.preload import Specimen, to_preload
 from roughmdr.aggregate.simulate import OF_MACHINE, simulate
 from roughmdr.ensemble import Source
@@ -37,23 +36,16 @@ def compute_under_machine(
     """
     names = list(variables)
     if source.all_alike:
-        return simulate(
-            source.ensemble(0, 0),
-            path,
-            effective_modulus=effective_modulus,
-            adhesion=adhesion,
-            variables=names,
-            interaction=interaction,
-        )
+        return simulate(Problem(source.ensemble(0, 0), effective_modulus, adhesion, interaction), path, names)
     if path.machine != FIXED_GRIPS and (lost := sorted(LOSSES.intersection(names))):
         raise SceneError(f"variables: {', '.join(lost)} of an expected law under a machine are not available")
     extreme = source.extremes(_CHANCE)
     first_touch = float(extreme.height.max()) + (adhesion.range if adhesion.cohesive else 0.0)
-    clear = clear_separation(extreme, effective_modulus, adhesion)
+    clear = Problem(extreme, effective_modulus, adhesion).clear
     if not np.isfinite(clear):
         raise OutOfRange("the contact of asperities as extreme as there may be is not representable")
     clear = max(clear, first_touch)
-    depth = source.sigma or float(extreme.nondimensional().rise[0])
+    depth = source.sigma or float(extreme.columns.rise[0])
 
     def along(separation: Floats, names: list[str]) -> LoadSeparation:
         return compute(

@@ -128,7 +128,7 @@ def _length(scene: Scene, curve: MeasuredCurve) -> float:
     """
     size = np.abs(curve.load)
     length = float(np.ptp(curve.values) * size.mean() / size.max())
-    return length or float(scene.asperities.extremes(1e-3).nondimensional().rise.max())
+    return length or float(scene.asperities.extremes(1e-3).columns.rise.max())
 
 
 def _entry(key: str, table: dict[str, Any]) -> Any:

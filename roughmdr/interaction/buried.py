@@ -18,7 +18,7 @@ _SEARCHED = 4.0
 
 def drop(ensemble: Ensemble, i: NDArray[np.int64], r: Floats) -> Floats:
     """Return f(r) [m] of the asperities i at distances r [m]; infinite beyond the end of a profile."""
-    kind, columns = SHAPES[ensemble.shape], ensemble.nondimensional()
+    kind, columns = SHAPES[ensemble.shape], ensemble.columns
     width, rise = columns.width[i], columns.rise[i]
     with np.errstate(over="ignore", invalid="ignore"):
         if kind is FlatPunch:
@@ -95,7 +95,7 @@ def _emerging(ensemble: Ensemble, i: NDArray[np.int64], j: NDArray[np.int64], aw
 def reach(ensemble: Ensemble, depth: Floats) -> Floats:
     """Return about the radius [m] at which the flank of each asperity is ``depth`` [m] below its summit, at least."""
     every = np.arange(ensemble.height.size)
-    low, high = np.zeros(every.size), ensemble.nondimensional().width.copy()
+    low, high = np.zeros(every.size), ensemble.columns.width.copy()
     for _ in range(_DOUBLINGS):
         above = drop(ensemble, every, high) < depth
         if not above.any():

@@ -39,7 +39,7 @@ class Placed:
         self.kept = np.flatnonzero(~below.hidden)
         """The numbers of the asperities that are not buried."""
         ensemble = ensemble.taken(self.kept)
-        self._columns = ensemble.nondimensional()
+        self._columns = ensemble.columns
         self.law = choose(ensemble.shape, Adhesion(), self._columns.params)
         """Their kernels without adhesion."""
         self._material = self.law.material(effective_modulus, Adhesion())

@@ -46,7 +46,7 @@ class Frame(NamedTuple):
         if sides is not None and min(x.min(), y.min()) >= 0.0 and x.max() <= sides[0] and y.max() <= sides[1]:
             return cls(0.0, 0.0, *sides)
         reach = margin or 0.05 * float(max(np.ptp(x), np.ptp(y)))
-        reach = reach or float(ensemble.nondimensional().width.max())
+        reach = reach or float(ensemble.columns.width.max())
         low = float(x.min()) - reach, float(y.min()) - reach
         return cls(*low, float(np.ptp(x)) + 2.0 * reach, float(np.ptp(y)) + 2.0 * reach)
 

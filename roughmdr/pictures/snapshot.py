@@ -5,6 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from roughmdr.aggregate import Problem
 from roughmdr.aggregate.each_contact import EachContact, contacts_at
 from roughmdr.ensemble import Ensemble
 from roughmdr.errors import StoreError
@@ -73,14 +74,8 @@ class Snapshot(NamedTuple):
             scene.seed, realization, stratified=method == "stratified", with_positions=placed or scene.needs_positions
         )
         above = np.nanmax(path) + _FAR * (np.ptp(path[np.isfinite(path)]) + abs(np.nanmax(path)))
-        contacts = contacts_at(
-            ensemble,
-            np.where(np.isnan(path), above, path),
-            step,
-            effective_modulus=scene.effective_modulus,
-            adhesion=scene.adhesion_model,
-            interaction=scene.interaction_model,
-        )
+        problem = Problem(ensemble, scene.effective_modulus, scene.adhesion_model, scene.interaction_model)
+        contacts = contacts_at(problem, np.where(np.isnan(path), above, path), step)
         on_grid = _on_grid(result, (*cell, realization))
         if not on_grid:
             _check_force(result, (*cell, realization), step, float(contacts.force.sum()))

@@ -98,7 +98,7 @@ def _jkr_validity(scene: Scene, radius: float) -> JkrValidity:
         raise RoughmdrError("the scene has no adhesion")
     one = Ensemble("paraboloid", np.zeros(1), {"radius": np.array([radius])})
     modulus, adhesion = scene.effective_modulus, scene.adhesion_model
-    return jkr_validity(one.shape, scene.asperities.sigma, one.nondimensional(), modulus, adhesion)
+    return jkr_validity(one.shape, scene.asperities.sigma, one.columns, modulus, adhesion)
 
 
 def _greenwood_williamson(cell: Cell, variable: Variable) -> Floats:

@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from roughmdr.aggregate import LoadingPath
+from roughmdr.aggregate import LoadingPath, Problem
 from roughmdr.aggregate.compute import compute
 from roughmdr.ensemble import SurfaceAsperities
 from roughmdr.ensemble.ensemble import Ensemble
@@ -95,11 +95,11 @@ def pressure_at(scene: Scene, summits: Ensemble, fraction: float) -> float:
     highest = float(summits.height.max())
     spread = float(np.ptp(summits.height)) or float(summits.parameters["radius"].min())
 
+    problem = Problem(summits, scene.effective_modulus, scene.adhesion_model)
+
     def law(depth: float) -> dict[str, Any]:
         path = LoadingPath.along(np.array([highest - spread * depth]), unload=False, adhesive=scene.work > 0.0)
-        modulus, adhesion = scene.effective_modulus, scene.adhesion_model
-        names = ["contact_fraction", "pressure"]
-        return compute(summits, path, effective_modulus=modulus, adhesion=adhesion, variables=names).variables
+        return compute(problem, path, ["contact_fraction", "pressure"]).variables
 
     def excess(depth: float) -> float:
         return float(law(depth)["contact_fraction"][0]) - fraction

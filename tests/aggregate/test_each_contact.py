@@ -11,6 +11,7 @@ from scenes import scene
 import roughmdr as rm
 from roughmdr.aggregate import LoadingPath, LoadSeparation, simulate
 from roughmdr.aggregate.each_contact import EachContact, contacts_at
+from roughmdr.aggregate.problem import Problem
 from roughmdr.ensemble import Ensemble
 from roughmdr.numerics.arguments import Floats
 from roughmdr.scene import Scene, read
@@ -35,11 +36,10 @@ def planned(adhesion: Any = None, interaction: Any = None, **asperities: Any) ->
 def law_and_contacts(
     one: Scene, ensemble: Ensemble, separation: Floats, step: int
 ) -> tuple[LoadSeparation, EachContact]:
-    given: Any = {"effective_modulus": one.effective_modulus, "adhesion": one.adhesion_model}
-    given["interaction"] = one.interaction_model
+    problem = Problem(ensemble, one.effective_modulus, one.adhesion_model, one.interaction_model)
     path = LoadingPath.along(separation, unload=False, adhesive=one.work > 0.0)
-    law = simulate(ensemble, path, variables=["force", "contact_radius_sum", "contact_count"], **given)
-    return law, contacts_at(ensemble, separation, step, **given)
+    law = simulate(problem, path, ["force", "contact_radius_sum", "contact_count"])
+    return law, contacts_at(problem, separation, step)
 
 
 @pytest.mark.few(3)

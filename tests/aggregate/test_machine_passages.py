@@ -7,10 +7,10 @@ import pytest
 import xarray as xr
 
 import roughmdr as rm
+from roughmdr.aggregate.problem import Problem
 from roughmdr.aggregate.under_machine import follow, separations_of
 from roughmdr.ensemble.ensemble import Ensemble
 from roughmdr.kernels.adhesion import Adhesion
-from roughmdr.kernels.choose import choose
 from roughmdr.loading.machine import DEAD_LOAD, spring
 
 E, W = 4e6, 0.05
@@ -140,10 +140,8 @@ def test_the_work_of_a_closed_cycle_is_what_contacts_and_machine_lose(kind: str,
     )
     assert float(law.contact_count[-1]) == 0.0
     ensemble = Ensemble.from_dataset(data)
-    columns, adhesion = ensemble.nondimensional(), Adhesion(W)
-    kernels = choose(ensemble.shape, adhesion, columns.params)
     demand = -cycle if dead else cycle
-    stands, jumps = separations_of(kernels, ensemble.height, columns, E, adhesion, machine, demand, jumps=True)
+    stands, jumps = separations_of(Problem(ensemble, E, Adhesion(W)), machine, demand, jumps=True)
     shape = {"paraboloid": rm.Paraboloid, "cone": rm.Cone, "power_law": rm.PowerLaw, "flat_punch": rm.FlatPunch}
     names = list(COLUMNS[kind])
     depth = [

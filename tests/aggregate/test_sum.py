@@ -12,6 +12,7 @@ from scenes import ensemble
 
 import roughmdr as rm
 from roughmdr.aggregate import LoadingPath, compute, loop, totals
+from roughmdr.aggregate.problem import Problem
 from roughmdr.ensemble import Ensemble
 from roughmdr.kernels.adhesion import Adhesion
 from roughmdr.kernels.choose import choose
@@ -160,9 +161,7 @@ def test_only_asperities_within_reach_are_visited(work: float) -> None:
     way_in = np.linspace(4e-6, 0.0, 50)
     route = LoadingPath.along(way_in, unload=True, adhesive=work > 0.0)
     asperities = Ensemble.from_dataset(data)
-    result = compute(
-        asperities, route, effective_modulus=E, adhesion=Adhesion(work), variables=["force", "contact_count"]
-    )
+    result = compute(Problem(asperities, E, Adhesion(work)), route, ["force", "contact_count"])
     z = asperities.height
     needed = sum(int((z > h).sum()) for h in way_in) + sum(int(((z > h - fold) & (z >= 0.0)).sum()) for h in way_in)
     assert result.visits == needed
@@ -194,7 +193,7 @@ def test_no_form_of_an_array_is_compiled_again() -> None:
 def test_only_the_asked_totals_are_computed() -> None:
     asperities = Ensemble.from_dataset(ensemble([1e-6, 2e-6], radius=5e-5))
     route = LoadingPath.along(np.array([0.0]), unload=False, adhesive=True)
-    columns = asperities.nondimensional()
+    columns = asperities.columns
     law = choose("paraboloid", Adhesion(W), columns[2])
     total, _, _ = loop.sum_over_asperities(
         law, asperities.height, columns, E, Adhesion(W), *route, rows={totals.RADIUS}

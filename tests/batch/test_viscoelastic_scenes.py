@@ -193,9 +193,11 @@ def test_the_commands(tmp_path: Path) -> None:
     assert "[interaction]" not in told.partition("left out")[0]
     for x in ("separation", "time"):
         call("plot", out, "-o", picture, "--x", x)
-    assert "not drawn: it is elastic, and the scene is not" in call("plot", out, "-o", picture, "--with-theory")
+    assert "elastic bodies under a flat, and the scene of bodies that relax" in call(
+        "plot", out, "-o", picture, "--with-theory"
+    )
     refused = CliRunner().invoke(main, ["plot", str(out), "-o", str(picture), "--kind", "asperity"])
-    assert (refused.exit_code, "the result is viscoelastic" in refused.output) == (2, True)
+    assert (refused.exit_code, "the result is of bodies that relax" in refused.output) == (2, True)
     assert "Ting" in cite(out)
     assert "Radok" in cite(file)
     assert "Ting" not in cite(rm.run(scene(batch=None)))

@@ -12,6 +12,7 @@ from studies.left_out import PARTS, SCENES, scene_of
 
 import roughmdr as rm
 from roughmdr.aggregate import compute
+from roughmdr.aggregate.problem import Problem
 from roughmdr.batch.plan import make_plan
 from roughmdr.variables import DEFAULT_VARIABLES
 
@@ -48,8 +49,8 @@ def test_every_part_is_counted_drawn_and_reported(studied: Studied) -> None:
 @pytest.mark.parametrize("name", SCENES)
 def test_what_is_counted_with_nothing_forced_on_is_a_run(name: str) -> None:
     scene = scene_of(ASPERITIES, **SCENES[name])
-    arguments = {"effective_modulus": scene.effective_modulus, "adhesion": scene.adhesion_model, "variables": ["force"]}
-    found = compute(scene.asperities.ensemble(scene.seed, 0), make_plan(scene).cells[0].path, **arguments)
+    problem = Problem(scene.asperities.ensemble(scene.seed, 0), scene.effective_modulus, scene.adhesion_model)
+    found = compute(problem, make_plan(scene).cells[0].path, ["force"])
     assert found.variables["force"].max() > 0.0
     np.testing.assert_array_equal(rm.run(scene)["force"].squeeze(), found.variables["force"])
 

@@ -13,12 +13,11 @@ from scenes import ASPERITIES, scene
 
 import roughmdr as rm
 from roughmdr.cli import main
-from roughmdr.report import citations, citations_of_layers
+from roughmdr.report import citations
 from roughmdr.report.citations import SOFTWARE, Paper
+from roughmdr.report.citations_of_stages import OF_STAGES
 
-PAPERS = [
-    each for module in (citations, citations_of_layers) for each in vars(module).values() if isinstance(each, Paper)
-]
+PAPERS = [*(each for each in vars(citations).values() if isinstance(each, Paper)), *OF_STAGES.values()]
 WITHOUT_DOI = {"Barber2003", "Cattaneo1938", "Mindlin1949", "MindlinDeresiewicz1953", "Jaeger1995", "Masing1926"}
 """Those whose DOI is not certain, or which have none."""
 ALWAYS = {"Hess2012", "PopovHess2015", "Sneddon1965", *(paper.key for paper in SOFTWARE.values())}

@@ -11,6 +11,7 @@ from oracles.sliding_springs import follow
 
 from roughmdr import OutOfRange
 from roughmdr.aggregate import LoadingPath, LoadSeparation, simulate
+from roughmdr.aggregate.problem import Problem
 from roughmdr.ensemble.ensemble import Ensemble
 from roughmdr.kernels.adhesion import Adhesion
 from roughmdr.loading.masing import Masing
@@ -31,7 +32,7 @@ def law_of(
 
     def normal(separation: Floats, names: list[str]) -> LoadSeparation:
         path = LoadingPath.along(separation, unload=False, adhesive=False)
-        return simulate(asperities, path, effective_modulus=modulus, adhesion=Adhesion(), variables=names)
+        return simulate(Problem(asperities, modulus, Adhesion()), path, names)
 
     found = partial_slip(normal, h, Masing.along(u), Tangential(modulus, RATIO, mu), list(names))
     return [found.variables[name] for name in names]
@@ -211,10 +212,8 @@ def test_six_digits_must_be_left_but_of_full_slip(force: list[float], way: float
 
 
 def test_a_lateral_path_has_no_pull_off() -> None:
-    law = simulate(
-        rough(), LoadingPath.along(np.array([0.0]), unload=False, adhesive=False),
-        effective_modulus=E, adhesion=Adhesion(), variables=["force"],
-    )  # fmt: skip
+    path = LoadingPath.along(np.array([0.0]), unload=False, adhesive=False)
+    law = simulate(Problem(rough(), E, Adhesion()), path, ["force"])
 
     def normal(separation: Floats, names: list[str]) -> LoadSeparation:
         force = np.linspace(1.0, 0.0, separation.size)

@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 from oracles.viscoelastic import Triangle
 
 from roughmdr.aggregate import LoadingPath, LoadSeparation, simulate
+from roughmdr.aggregate.problem import Problem
 from roughmdr.ensemble import Ensemble
 from roughmdr.kernels.adhesion import Adhesion
 from roughmdr.numerics.arguments import Floats
@@ -40,7 +41,7 @@ def body(
 def law(ensemble: Ensemble, separation: Floats, of: Viscoelasticity, names: list[str] = NAMES) -> LoadSeparation:
     def elastic(separation: Floats, names: list[str]) -> LoadSeparation:
         path = LoadingPath.along(separation, unload=False, adhesive=False)
-        return simulate(ensemble, path, effective_modulus=MODULUS, adhesion=Adhesion(), variables=names)
+        return simulate(Problem(ensemble, MODULUS, Adhesion()), path, names)
 
     clear = math.nextafter(float(ensemble.height.max()), math.inf)
     return viscoelastic_law(elastic, separation, names, of, clear=clear, nominal_area=ensemble.nominal_area)
@@ -116,7 +117,7 @@ def test_without_a_share_it_is_elastic() -> None:
     ensemble, separation = asperities(np.random.default_rng(0).normal(0.0, 1e-6, 50)), there_and_back()
     found = law(ensemble, separation, body([(0.0, 1.0)], 1e-6, dwell=0.3))
     path = LoadingPath.along(separation, unload=False, adhesive=False)
-    elastic = simulate(ensemble, path, effective_modulus=MODULUS, adhesion=Adhesion(), variables=NAMES)
+    elastic = simulate(Problem(ensemble, MODULUS, Adhesion()), path, NAMES)
     for name in NAMES:
         np.testing.assert_allclose(found.variables[name], elastic.variables[name], rtol=1e-13, atol=0.0)
 

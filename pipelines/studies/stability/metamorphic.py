@@ -10,6 +10,7 @@ import xarray as xr
 
 import roughmdr as rm
 from roughmdr.aggregate import LoadingPath, compute
+from roughmdr.aggregate.problem import Problem
 from roughmdr.ensemble.ensemble import Ensemble
 from roughmdr.kernels.adhesion import Adhesion
 from roughmdr.numerics.arguments import Floats
@@ -95,7 +96,7 @@ def visits(data: xr.Dataset, given: dict[str, Any]) -> int:
     adhesion = Adhesion.checked(given.get("adhesion", "jkr"), given["work"], given.get("strength"))
     route = LoadingPath.along(path(given), unload=True, adhesive=adhesion.work > 0.0)
     modulus, asperities = given["effective_modulus"], Ensemble.from_dataset(data)
-    return compute(asperities, route, effective_modulus=modulus, adhesion=adhesion, variables=["force"]).visits
+    return compute(Problem(asperities, modulus, adhesion), route, ["force"]).visits
 
 
 def without_adhesion(shape: Shape, given: dict[str, Any]) -> tuple[float, float]:

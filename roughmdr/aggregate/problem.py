@@ -1,0 +1,110 @@
+"""The contacts of an ensemble with a material under its adhesion: what follows from these is found once."""
+
+import math
+from functools import cached_property
+
+import numpy as np
+
+from roughmdr.aggregate.detachment import Detachments, detachments
+from roughmdr.aggregate.law import PER_AREA
+from roughmdr.aggregate.loop import sum_over_asperities
+from roughmdr.aggregate.tabor import JkrValidity, jkr_validity
+from roughmdr.ensemble.ensemble import Ensemble
+from roughmdr.errors import SceneError
+from roughmdr.interaction.placed import check_placed
+from roughmdr.interaction.settings import Interaction, reason_against_adhesion
+from roughmdr.kernels.adhesion import Adhesion
+from roughmdr.kernels.choose import choose
+from roughmdr.kernels.interface import Columns, Kernels
+from roughmdr.loading.path import LoadingPath
+from roughmdr.numerics.arguments import Floats
+
+_MARGIN = 1e-9  # of the depth of detachment, at which a contact still holds
+
+
+class Problem:
+    """An ensemble that is pressed: its material, how it adheres, and how its asperities feel each other."""
+
+    def __init__(
+        self, ensemble: Ensemble, effective_modulus: float, asked: Adhesion, interaction: Interaction | None = None
+    ) -> None:
+        """Take E* [Pa], and the adhesion that is ``asked`` for, whose model may be "auto"."""
+        self.ensemble, self.effective_modulus = ensemble, effective_modulus
+        self.asked, self.interaction = asked, interaction
+        self._detachments: dict[str, Detachments] = {}
+
+    def check_asked(self, names: list[str]) -> None:
+        """Raise SceneError where the ensemble lacks what variables or the interaction need."""
+        if self.ensemble.nominal_area is None and not PER_AREA.isdisjoint(names):
+            raise SceneError(f"ensemble: attribute nominal_area is missing; {', '.join(sorted(PER_AREA))} need it")
+        if self.interaction is not None:
+            check_placed(self.ensemble, self.interaction)
+            if reason := reason_against_adhesion(self.interaction, self.asked):
+                raise SceneError(f"interaction {reason}")
+
+    @property
+    def paired(self) -> bool:
+        """Whether asperities feel each other in pairs."""
+        return self.interaction is not None and self.interaction.model == "pairwise"
+
+    @cached_property
+    def validity(self) -> JkrValidity:
+        """How well JKR holds."""
+        own = self.ensemble.shape, self.ensemble.spread, self.ensemble.columns, self.effective_modulus, self.asked
+        return jkr_validity(*own, lambda: self.detachments(Adhesion(self.asked.work)))
+
+    @cached_property
+    def adhesion(self) -> Adhesion:
+        """The adhesion that is used: "auto" is JKR or Dugdale's."""
+        return self.asked.resolved(self.validity.jkr_error)
+
+    @cached_property
+    def kernels(self) -> Kernels:
+        """The kernels of one contact."""
+        return choose(self.ensemble.shape, self.adhesion, self.ensemble.columns.params)
+
+    def detachments(self, adhesion: Adhesion) -> Detachments:
+        """Return where each contact detaches under fixed grips, by its own adhesion or another model of it."""
+        if adhesion.model not in self._detachments:
+            kernels = choose(self.ensemble.shape, adhesion, self.ensemble.columns.params)
+            self._detachments[adhesion.model] = detachments(
+                kernels, self.ensemble.columns, self.effective_modulus, adhesion
+            )
+        return self._detachments[adhesion.model]
+
+    def highest(self, count: int) -> tuple[Floats, Columns, Floats]:
+        """Return heights, columns and depths of detachment [m] of so many of the highest asperities."""
+        few = Columns(*(column[:count] for column in self.ensemble.columns))
+        if (known := self._detachments.get(self.adhesion.model)) is None:
+            known = detachments(self.kernels, few, self.effective_modulus, self.adhesion)
+        return self.ensemble.height[:count], few, known.depth[:count]
+
+    @cached_property
+    def clear(self) -> float:
+        """A separation [m] just above that at which any asperity is in contact, or attracts.
+
+        There a flat that rises has left all of them. NaN where the contact of an asperity is not representable.
+        """
+        height = self.ensemble.height
+        highest = last = float(height.max())
+        if self.asked.work == 0.0:
+            return highest
+        for model in self.asked.candidates:
+            one = self.asked._replace(model=model)
+            with np.errstate(all="ignore"):  # what no float can hold is NaN
+                depths = self.detachments(one).depth
+                if not ((depths > 0.0) & (depths < math.inf)).all():
+                    return math.nan
+                found = float(np.max(height + (1.0 + _MARGIN) * np.maximum(depths, one.range)))
+            last = max(last, found) if found < math.inf else math.nan
+        return math.nextafter(last, math.inf)
+
+    @property
+    def depth(self) -> float:
+        """A usual indentation [m]: the spread of the heights, or the rise of the first asperity."""
+        return self.ensemble.spread or float(self.ensemble.columns.rise[0])
+
+    def sums(self, path: LoadingPath, rows: set[int]) -> tuple[Floats, Floats, int]:
+        """Return the totals of independent contacts along a path, as ``sum_over_asperities``."""
+        own = self.kernels, self.ensemble.height, self.ensemble.columns, self.effective_modulus, self.adhesion
+        return sum_over_asperities(*own, path.separation, path.memory, rows)
