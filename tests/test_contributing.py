@@ -127,6 +127,8 @@ for wrong, says in (
     ({"stiffening": {"factor": -1}}, "stiffening.factor = -1: must be above 0"),
     ({"adhesion": {"model": "jkr", "work": 0.05}, "stiffening": {"factor": 2}}, "does not go with adhesion"),
     ({"output": {"variables": ["untreated_force"]}}, "untreated_force needs [stiffening]"),
+    ({"path": {"force": {"stop": "1 mN", "steps": 4}}, "stiffening": {"factor": 2}}, "not with path.force"),
+    ({"nominal": {"radius": "1 mm"}, "stiffening": {"factor": 2}}, "each is of the elastic law under a flat"),
 ):
     Path("wrong.toml").write_text(tomli_w.dumps(plain | wrong))
     assert says in told("plan", "wrong.toml"), (says, told("plan", "wrong.toml"))

@@ -152,7 +152,7 @@ def pull_off_of(problem: Problem, path: LoadingPath, force: Floats) -> PullOff:
     count = int(np.count_nonzero(problem.ensemble.height >= float(path.separation.min()) - adhesion.range))
     if not (problem.kernels.adhesive and count):
         return WITHOUT_TENSION
-    top, few, depths = problem.highest(count)
+    top, few, depths = problem.top(count)
 
     def sums(along: LoadingPath, rows: set[int]) -> Floats:
         own = problem.kernels, top, few, problem.effective_modulus, adhesion

@@ -82,7 +82,7 @@ def law_on_machine(
     from roughmdr.interaction.jkr.machine import solve_on_machine
 
     assert problem.interaction is not None
-    judged, work = set(_judged(problem.ensemble, names)), problem.asked.work
+    judged, work = set(_judged(problem.ensemble, names)), problem.asked_adhesion.work
     given = problem.ensemble, path, problem.effective_modulus, work, problem.interaction
     along = solve_on_machine(*given, judged, clear, _reach(problem))
     found = _adhering(problem.ensemble, along.separation, problem.interaction, along)
@@ -102,7 +102,7 @@ def _judged(ensemble: Ensemble, names: list[str]) -> list[str]:
 def _law(problem: Problem, found: CoupledTotals, separation: Floats, names: list[str]) -> LoadSeparation:
     """Return the law with these totals at separations [m]."""
     ensemble, validity = problem.ensemble, problem.validity
-    work, spread, effective_modulus = problem.asked.work, ensemble.spread, problem.effective_modulus
+    work, spread, effective_modulus = problem.asked_adhesion.work, ensemble.spread, problem.effective_modulus
     area = math.nan if ensemble.nominal_area is None else ensemble.nominal_area
     givens = Givens(effective_modulus, work, spread, area, float(found.radius.max(initial=0.0)))
     assumptions = Assumptions(
@@ -134,7 +134,7 @@ def _law(problem: Problem, found: CoupledTotals, separation: Floats, names: list
 
 def sum_coupled(problem: Problem, separation: Floats, names: list[str], reach: float = 0.0) -> CoupledTotals:
     """Return totals at separations [m], ``reach`` as ``Account``; SceneError where a variable is not had."""
-    interaction, work = problem.interaction, problem.asked.work
+    interaction, work = problem.interaction, problem.asked_adhesion.work
     assert interaction is not None
     ensemble, effective_modulus = problem.ensemble, problem.effective_modulus
     if work > 0.0:

@@ -79,10 +79,10 @@ def _coupled(problem: Problem, separation: Floats, step: int) -> tuple[Floats, F
     assert problem.interaction is not None
     names, path = set[str](), separation[: step + 1]
     along: Adhering | Coupled
-    if problem.asked.work > 0.0:
+    if problem.asked_adhesion.work > 0.0:
         from roughmdr.interaction.jkr.path import solve_path as solve_adhering
 
-        work = problem.asked.work
+        work = problem.asked_adhesion.work
         along = solve_adhering(
             problem.ensemble, path, problem.effective_modulus, work, problem.interaction, names, at=step
         )

@@ -1,4 +1,4 @@
-"""The contacts of an ensemble with a material under its adhesion: what follows from these is found once."""
+"""Problem: an ensemble, its material and its adhesion, with what follows from them computed once and kept."""
 
 import math
 from functools import cached_property
@@ -30,8 +30,8 @@ class Problem:
     ) -> None:
         """Take E* [Pa], and the adhesion that is ``asked`` for, whose model may be "auto"."""
         self.ensemble, self.effective_modulus = ensemble, effective_modulus
-        self.asked, self.interaction = asked, interaction
-        self._detachments: dict[str, Detachments] = {}
+        self.asked_adhesion, self.interaction = asked, interaction
+        self._depths: dict[Adhesion, Floats] = {}
 
     def check_asked(self, names: list[str]) -> None:
         """Raise SceneError where the ensemble lacks what variables or the interaction need."""
@@ -39,7 +39,7 @@ class Problem:
             raise SceneError(f"ensemble: attribute nominal_area is missing; {', '.join(sorted(PER_AREA))} need it")
         if self.interaction is not None:
             check_placed(self.ensemble, self.interaction)
-            if reason := reason_against_adhesion(self.interaction, self.asked):
+            if reason := reason_against_adhesion(self.interaction, self.asked_adhesion):
                 raise SceneError(f"interaction {reason}")
 
     @property
@@ -50,34 +50,38 @@ class Problem:
     @cached_property
     def validity(self) -> JkrValidity:
         """How well JKR holds."""
-        own = self.ensemble.shape, self.ensemble.spread, self.ensemble.columns, self.effective_modulus, self.asked
-        return jkr_validity(*own, lambda: self.detachments(Adhesion(self.asked.work)))
+        own = self.ensemble.shape, self.ensemble.spread, self.ensemble.columns, self.effective_modulus
+        return jkr_validity(*own, self.asked_adhesion, lambda: self._detached(Adhesion(self.asked_adhesion.work)))
 
     @cached_property
     def adhesion(self) -> Adhesion:
         """The adhesion that is used: "auto" is JKR or Dugdale's."""
-        return self.asked.resolved(self.validity.jkr_error)
+        return self.asked_adhesion.resolved(self.validity.jkr_error)
 
     @cached_property
     def kernels(self) -> Kernels:
         """The kernels of one contact."""
         return choose(self.ensemble.shape, self.adhesion, self.ensemble.columns.params)
 
-    def detachments(self, adhesion: Adhesion) -> Detachments:
-        """Return where each contact detaches under fixed grips, by its own adhesion or another model of it."""
-        if adhesion.model not in self._detachments:
-            kernels = choose(self.ensemble.shape, adhesion, self.ensemble.columns.params)
-            self._detachments[adhesion.model] = detachments(
-                kernels, self.ensemble.columns, self.effective_modulus, adhesion
-            )
-        return self._detachments[adhesion.model]
+    def depths(self, adhesion: Adhesion) -> Floats:
+        """Return how far below first touch each contact detaches under fixed grips [m]; found once for an adhesion."""
+        one = _without_range(adhesion)
+        return self._depths[one] if one in self._depths else self._detached(one).depth
 
-    def highest(self, count: int) -> tuple[Floats, Columns, Floats]:
+    def _detached(self, adhesion: Adhesion) -> Detachments:
+        """Return where each contact detaches, and keep the depths."""
+        columns = self.ensemble.columns
+        kernels = choose(self.ensemble.shape, adhesion, columns.params)
+        found = detachments(kernels, columns, self.effective_modulus, adhesion)
+        self._depths[adhesion] = found.depth
+        return found
+
+    def top(self, count: int) -> tuple[Floats, Columns, Floats]:
         """Return heights, columns and depths of detachment [m] of so many of the highest asperities."""
         few = Columns(*(column[:count] for column in self.ensemble.columns))
-        if (known := self._detachments.get(self.adhesion.model)) is None:
-            known = detachments(self.kernels, few, self.effective_modulus, self.adhesion)
-        return self.ensemble.height[:count], few, known.depth[:count]
+        if (known := self._depths.get(_without_range(self.adhesion))) is None:
+            known = detachments(self.kernels, few, self.effective_modulus, self.adhesion).depth
+        return self.ensemble.height[:count], few, known[:count]
 
     @cached_property
     def clear(self) -> float:
@@ -87,12 +91,12 @@ class Problem:
         """
         height = self.ensemble.height
         highest = last = float(height.max())
-        if self.asked.work == 0.0:
+        if self.asked_adhesion.work == 0.0:
             return highest
-        for model in self.asked.candidates:
-            one = self.asked._replace(model=model)
+        for model in self.asked_adhesion.candidates:
+            one = self.asked_adhesion._replace(model=model)
             with np.errstate(all="ignore"):  # what no float can hold is NaN
-                depths = self.detachments(one).depth
+                depths = self.depths(one)
                 if not ((depths > 0.0) & (depths < math.inf)).all():
                     return math.nan
                 found = float(np.max(height + (1.0 + _MARGIN) * np.maximum(depths, one.range)))
@@ -108,3 +112,8 @@ class Problem:
         """Return the totals of independent contacts along a path, as ``sum_over_asperities``."""
         own = self.kernels, self.ensemble.height, self.ensemble.columns, self.effective_modulus, self.adhesion
         return sum_over_asperities(*own, path.separation, path.memory, rows)
+
+
+def _without_range(adhesion: Adhesion) -> Adhesion:
+    """Return an adhesion that detaches contacts alike, JKR without the strength that it does not need."""
+    return adhesion if adhesion.cohesive else Adhesion(adhesion.work)

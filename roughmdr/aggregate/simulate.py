@@ -36,7 +36,7 @@ def simulate(problem: Problem, path: LoadingPath | MachinePath, variables: Itera
 
     def under(path: MachinePath, names: list[str]) -> LoadSeparation:
         of_contacts = [name for name in names if name not in OF_MACHINE]
-        if problem.interaction is not None and problem.asked.work > 0.0 and path.machine != FIXED_GRIPS:
+        if problem.interaction is not None and problem.asked_adhesion.work > 0.0 and path.machine != FIXED_GRIPS:
             from roughmdr.aggregate.coupled import law_on_machine
 
             law, separation = law_on_machine(problem, path, of_contacts, clear)

@@ -50,7 +50,7 @@ def separations_of(
     touches = releases = _NONE
     release = height
     if kernels.adhesive:
-        release = height + problem.detachments(adhesion).depth
+        release = height + problem.depths(adhesion)
         touches, releases = np.sort(height + adhesion.range), np.sort(release)
     asperities = response.keep(height, columns, material, adhesion.range, release, kernels.prepare)
     law = _compiled(kernels)

@@ -7,7 +7,7 @@ import numpy as np
 
 from roughmdr.analysis.pull_off import pull_off
 from roughmdr.errors import StoreError
-from roughmdr.result.curves import curves_of, is_ensemble, is_result
+from roughmdr.result.curves import is_ensemble, is_result, stored_curves
 from roughmdr.result.trust import trust_of_result
 from roughmdr.result.view import ResultView
 from roughmdr.schema.units import format_quantity
@@ -55,7 +55,7 @@ def _describe_result(result: ResultView) -> Iterator[tuple[str, str]]:
 def _axes(result: ResultView) -> list[tuple[str, str]]:
     """Return the swept keys with their ranges."""
     dataset = result.dataset
-    swept = {dim for name in curves_of(result) for dim in dataset[name].dims} - {"realization", "step"}
+    swept = {dim for name in stored_curves(result) for dim in dataset[name].dims} - {"realization", "step"}
     others = (*AUXILIARY_COORDINATES, *STEP_COORDINATES)
     names = [str(name) for name, each in dataset.coords.items() if name not in others and set(each.dims) <= swept]
     return [(name, _range(dataset[name])) for name in names]

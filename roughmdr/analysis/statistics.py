@@ -12,7 +12,7 @@ from roughmdr.errors import StoreError
 from roughmdr.loading.path import LoadingPath
 from roughmdr.numerics.arguments import Floats
 from roughmdr.result.cells import of_cells
-from roughmdr.result.curves import curves_of, result_of
+from roughmdr.result.curves import result_of, stored_curves
 from roughmdr.result.view import ResultView
 from roughmdr.scene import Scene
 from roughmdr.schema.toml_text import parse_toml
@@ -54,7 +54,7 @@ def statistics(dataset: "xr.Dataset") -> "xr.Dataset":
         raise StoreError("statistics needs the dimension realization, and status; this result has none")
     done = (dataset["status"] == DONE).compute()
     found: dict[str, xr.DataArray] = {}
-    for name in curves_of(result):
+    for name in stored_curves(result):
         found |= _statistics(dataset, name, done)
     for name in PULL_OFF:
         if name in dataset and "realization" in dataset[name].dims:

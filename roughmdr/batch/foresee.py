@@ -55,7 +55,7 @@ def foresee_cells(plan: Plan) -> Prospect:
     for number in _some_cells(plan, _MAX_CELLS):
         cell = plan.cells[number]
         separation, most = cell.path.separation, _MAX_PAIRED_STEPS if cell.scene.needs_positions else _MAX_STEPS
-        steps = min([most, *(stage.most_foreseen for stage in cell.scene.stages)])
+        steps = int(min([most, *(stage.most_foreseen for stage in cell.scene.stages)]))
         if separation.size > steps:
             some = np.linspace(0, separation.size - 1, steps).astype(int)
             separation = separation[np.unique(np.append(some, np.argmin(separation)))]
@@ -123,7 +123,7 @@ def _foreseen(scene: Scene, path: LoadingPath) -> Foreseen:
     if paired:
         ensemble = part_of(ensemble, count)
     variables = ["force"] if ensemble.nominal_area is None else ["force", "contact_fraction", "pressure"]
-    law = simulate_ensemble(scene.without_grid, path, ensemble, variables)
+    law = simulate_ensemble(_coarse(scene.without_grid), path, ensemble, variables)
     area = math.nan if ensemble.nominal_area is None else ensemble.nominal_area
     if source.nominal_area is not None:
         law = law._replace(effective_contacts=law.effective_contacts * source.nominal_area / area)
@@ -132,6 +132,10 @@ def _foreseen(scene: Scene, path: LoadingPath) -> Foreseen:
 
 def _foreseen_curved(scene: Scene, path: LoadingPath) -> Foreseen:
     """Return the law of a curved body as few rings tell it."""
-    coarse = scene.model_copy(update={stage.key: stage.coarse() for stage in scene.stages})
     names = ["force", *(name for stage in scene.stages for name in stage.more_variables(["force"]))]
-    return Foreseen(path, simulate_realization(coarse, path, 0, names, "expected"), math.nan)
+    return Foreseen(path, simulate_realization(_coarse(scene), path, 0, names, "expected"), math.nan)
+
+
+def _coarse(scene: Scene) -> Scene:
+    """Return a scene whose stages have larger errors and take less time."""
+    return scene.model_copy(update={stage.key: stage.coarse() for stage in scene.stages})

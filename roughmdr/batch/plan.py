@@ -31,7 +31,7 @@ class Cell(NamedTuple):
     path: LoadingPath
     """Under a machine that of usual asperities, by which costs and contacts are foreseen."""
     machine: MachinePath | None = None
-    """What the machine does; None where the flat itself is moved."""
+    """The path of the machine; None where the flat itself is moved."""
     lateral: LateralPath | None = None
     """How the flat is moved sideways, along a path that stays where it is; None where it is not."""
 
@@ -126,7 +126,7 @@ class Plan(NamedTuple):
 
     @property
     def stage_notes(self) -> dict[str, list[str]]:
-        """Lines on what the theory of a stage neglects, by its ``noted``, with the number of cells where not in all."""
+        """Lines on what the theory of each stage neglects, by name, with the number of cells where not in all."""
 
         def lines(noted: str) -> Iterator[str]:
             stages = ((cell.scene, stage) for cell in self.cells for stage in cell.scene.stages)
@@ -263,7 +263,7 @@ def _left_out(scene: Scene) -> Iterator[str]:
         yield "interaction: asperities are independent; the scene has no [interaction]"
     absent = list[str]()
     for stage in STAGES:
-        section = scene.stage(stage)
+        section = getattr(scene, stage.key)
         yield from stage.left_out(scene, section)
         absent += stage.own_variables if section is None else ()
     if unasked := [name for name in OUTPUT_VARIABLES if name not in (*absent, *scene.output.variables)]:

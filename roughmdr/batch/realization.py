@@ -19,7 +19,7 @@ def simulate_ensemble(
 ) -> LoadSeparation:
     """Return the law of an ensemble with the material, adhesion, interaction and stages of a scene.
 
-    ``realization`` is its number where it is all that is drawn for it, so that stages may compute more beside it.
+    ``realization`` is the number of a whole realisation, and None of a part of one, beside which nothing is computed.
     """
     problem = Problem(ensemble, scene.effective_modulus, scene.adhesion_model, scene.interaction_model)
 

@@ -102,7 +102,7 @@ class Ensemble:
         """The area of contacts over that of circles as stiff: below 1 where they are long [1]."""
         return float(self.attrs.get("area_share", 1.0))
 
-    @property
+    @cached_property
     def spread(self) -> float:
         """Standard deviation of the heights [m]; 0 where all are equal."""
         with np.errstate(all="ignore"):  # where no float holds their squares, JKR is not taken for right

@@ -28,7 +28,7 @@ from roughmdr.ensemble import Ensemble, Source
 from roughmdr.ensemble.nodes import Nodes, Rule
 from roughmdr.errors import OutOfRange
 from roughmdr.expected.converge import FIRST_ORDER, WARNED_ERROR, converge, converge_at_kinks
-from roughmdr.expected.node import Problem, QuadratureNode, moved, set_up, totals_of, undecided_of
+from roughmdr.expected.node import MeanProblem, QuadratureNode, moved, set_up, totals_of, undecided_of
 from roughmdr.expected.pull_off import pull_off_of
 from roughmdr.interaction.settings import Interaction
 from roughmdr.kernels.adhesion import Adhesion
@@ -63,7 +63,7 @@ def compute(
     dissipating = any(TOTAL_INDEX[name] == DISSIPATED for name in names)
     coarse = as_ensemble(source, source.nodes(Rule.smooth(FIRST_ORDER)))
     validity = jkr_validity(source.shape_name, source.sigma, coarse.columns, effective_modulus, adhesion)
-    problem = Problem(source, path, effective_modulus, adhesion.resolved(validity.jkr_error), rows, unjudged)
+    problem = MeanProblem(source, path, effective_modulus, adhesion.resolved(validity.jkr_error), rows, unjudged)
     found = _shift(problem, interaction)
     if found is not None:
         rows = rows if STIFFNESS in rows else (*rows, STIFFNESS)
@@ -140,7 +140,7 @@ def force_of_equal_shapes(
         one = as_ensemble(source, source.nodes(Rule.smooth(1))).columns
         validity = jkr_validity(source.shape_name, source.sigma, one, effective_modulus, adhesion)
         adhesion = adhesion.resolved(validity.jkr_error)
-    nodes = set_up(Problem(source, path, effective_modulus, adhesion, (FORCE,)), Rule.smooth(1))
+    nodes = set_up(MeanProblem(source, path, effective_modulus, adhesion, (FORCE,)), Rule.smooth(1))
     total, _ = totals_of(nodes, path.separation, (FORCE,), list(range(path.separation.size)))
     largest = float(np.abs(total[FORCE]).max())
     error = _KERNEL_ERROR + (float(total[ERROR].max()) / largest if largest > 0.0 else 0.0)
@@ -151,7 +151,7 @@ def force_of_equal_shapes(
     return source.expected_count * total[FORCE], error, touching
 
 
-def _shift(problem: Problem, interaction: Interaction | None) -> Shift | None:
+def _shift(problem: MeanProblem, interaction: Interaction | None) -> Shift | None:
     """Return where the asperities have the force that they have under their mean field; None where there is none.
 
     The rule over the shape parameters is that of independent asperities on the same path.
@@ -182,7 +182,7 @@ def prepare(
     """Compile what the expected law needs, by one node; OutOfRange where its contact is not representable."""
     rows, _ = _rows(variables)
     for model in adhesion.candidates:
-        problem = Problem(source, path, effective_modulus, adhesion._replace(model=model), rows)
+        problem = MeanProblem(source, path, effective_modulus, adhesion._replace(model=model), rows)
         totals_of(set_up(problem, Rule.smooth(1)), path.separation, rows, [0])
 
 

@@ -17,7 +17,7 @@ from roughmdr.ensemble.nodes import Rule
 from roughmdr.errors import RoughmdrError
 from roughmdr.expected.detached import PartialRule, sums_of
 from roughmdr.expected.kinks import KinkSplit
-from roughmdr.expected.node import Problem, QuadratureNode, set_up
+from roughmdr.expected.node import MeanProblem, QuadratureNode, set_up
 from roughmdr.expected.panels import RTOL_PANEL, halve_panels
 from roughmdr.numerics.arguments import Floats, Ints
 
@@ -54,7 +54,7 @@ class Converged(NamedTuple):
     smooth: bool
     """Whether the rules are those for smooth functions."""
 
-    def sums(self, problem: Problem, nodes: list[QuadratureNode], *, dissipating: bool) -> tuple[Floats, int]:
+    def sums(self, problem: MeanProblem, nodes: list[QuadratureNode], *, dissipating: bool) -> tuple[Floats, int]:
         """Return the totals of one asperity [row, step], and how often tables were multiplied; ``nodes`` may have been
         moved to the path of the problem.
         """
@@ -72,7 +72,7 @@ class _Trial(NamedTuple):
     found: Floats
 
 
-def converge_at_kinks(problem: Problem, *, dissipating: bool) -> tuple[Converged, KinkSplit | None]:
+def converge_at_kinks(problem: MeanProblem, *, dissipating: bool) -> tuple[Converged, KinkSplit | None]:
     """Return the rule for all rows, and where it is split at some steps; arguments and errors as ``converge``."""
     if problem.hysteretic:
         with suppress(RoughmdrError):  # parameters that almost no asperity has may not be representable
@@ -83,7 +83,7 @@ def converge_at_kinks(problem: Problem, *, dissipating: bool) -> tuple[Converged
     return converge(problem, split, dissipating=dissipating), split
 
 
-def _converge_parts(problem: Problem, dissipating: bool) -> Converged | None:
+def _converge_parts(problem: MeanProblem, dissipating: bool) -> Converged | None:
     """Return the rule for smooth functions with the weights of its parts; None where these do not hold.
 
     Nothing has a kink then, and a few steps are compared.
@@ -104,11 +104,11 @@ def _converge_parts(problem: Problem, dissipating: bool) -> Converged | None:
     return _with_means(problem, smooth, others=True)
 
 
-def _first_rules(problem: Problem) -> tuple[Rule, ...]:
+def _first_rules(problem: MeanProblem) -> tuple[Rule, ...]:
     return (Rule.smooth(FIRST_ORDER),) * sum(problem.source.node_axes)
 
 
-def _with_means(problem: Problem, smooth: Converged, *, others: bool) -> Converged:
+def _with_means(problem: MeanProblem, smooth: Converged, *, others: bool) -> Converged:
     """Return the rules with errors not below those in the means of the parameters, of ``others`` too or not."""
     of_means = _mean_errors(problem, smooth.rules)
     of_others = max(smooth.error_of_others, of_means if others else 0.0)
@@ -120,7 +120,7 @@ def _spread(steps: Ints) -> Ints:
     return np.asarray(steps[np.unique(np.linspace(0, steps.size - 1, _PROBES).astype(int))])
 
 
-def converge(problem: Problem, split: KinkSplit | None, *, dissipating: bool) -> Converged:
+def converge(problem: MeanProblem, split: KinkSplit | None, *, dissipating: bool) -> Converged:
     """Return the rule for all rows; RoughmdrError where a contact is not representable.
 
     Steps at which the rule is split are not considered.
@@ -150,7 +150,7 @@ def converge(problem: Problem, split: KinkSplit | None, *, dissipating: bool) ->
     return Converged((rule,), nodes, float(errors[0]), float(errors[1:].max(initial=0.0)), smooth=False)
 
 
-def _curves(problem: Problem, steps: Sequence[int], dissipating: bool) -> _CurvesOfRule:
+def _curves(problem: MeanProblem, steps: Sequence[int], dissipating: bool) -> _CurvesOfRule:
     """Return the function that has the force and all other rows which are judged: [curve, step]."""
     judged = problem._replace(rows=problem.judged)
     rows = (*judged.rows, DISSIPATED) if dissipating else judged.rows
@@ -162,7 +162,7 @@ def _curves(problem: Problem, steps: Sequence[int], dissipating: bool) -> _Curve
 
 
 def _converge_order(
-    problem: Problem, curves: _CurvesOfRule, nodes: list[QuadratureNode], *, in_parts: bool = False
+    problem: MeanProblem, curves: _CurvesOfRule, nodes: list[QuadratureNode], *, in_parts: bool = False
 ) -> Converged:
     """Raise the orders of Gauss's rules for smooth functions, from the first rules and their nodes on, until two agree
     or a higher one does not help.
@@ -212,13 +212,13 @@ def _converge_order(
     return Converged(base.rules, base.nodes, force, max(others, default=0.0), smooth=True)
 
 
-def _count(problem: Problem, rules: tuple[Rule, ...]) -> int:
+def _count(problem: MeanProblem, rules: tuple[Rule, ...]) -> int:
     """Return the number of nodes of rules."""
     orders = iter([rule.scores.size for rule in rules])
     return sum(math.prod(next(orders) for _ in range(axes)) for axes in problem.source.node_axes)
 
 
-def _mean_errors(problem: Problem, rules: tuple[Rule, ...]) -> float:
+def _mean_errors(problem: MeanProblem, rules: tuple[Rule, ...]) -> float:
     """Return the sum of the errors of rules in the means of all parameters whose means are known."""
     return sum(map(_mean_error, problem.source.drawn_parameters, rules))
 

@@ -21,7 +21,7 @@ from roughmdr.ensemble.nodes import Rule
 from roughmdr.expected.curve import Curve, scales_of
 from roughmdr.expected.heights import HeightTable
 from roughmdr.expected.intervals import Intervals, has_branches, jump_energies
-from roughmdr.expected.node import Problem, QuadratureNode, dissipated_of, totals_of
+from roughmdr.expected.node import MeanProblem, QuadratureNode, dissipated_of, totals_of
 from roughmdr.expected.score_lines import Line, crossings, lines_along, weighty
 from roughmdr.expected.table import ORDER
 from roughmdr.numerics.arguments import Floats, Ints
@@ -40,14 +40,14 @@ _NEGLIGIBLE = 1e-14  # of all asperities
 class PartialRule(NamedTuple):
     """A rule for smooth functions, with the weights of parts of it at the steps that need them."""
 
-    problem: Problem
+    problem: MeanProblem
     nodes: list[QuadratureNode]
     lines: list[Line]
     steps: Ints
     """Those that need it."""
 
     @classmethod
-    def of(cls, problem: Problem, rules: tuple[Rule, ...], nodes: list[QuadratureNode]) -> "PartialRule | None":
+    def of(cls, problem: MeanProblem, rules: tuple[Rule, ...], nodes: list[QuadratureNode]) -> "PartialRule | None":
         """Return None where no step needs it, or where it does not hold.
 
         It holds while the flat has turned once only, for heights whose density is smooth and contacts of one branch,
@@ -143,7 +143,12 @@ class PartialRule(NamedTuple):
 
 
 def sums_of(
-    problem: Problem, partial: PartialRule | None, nodes: list[QuadratureNode], steps: list[int], *, dissipating: bool
+    problem: MeanProblem,
+    partial: PartialRule | None,
+    nodes: list[QuadratureNode],
+    steps: list[int],
+    *,
+    dissipating: bool,
 ) -> tuple[Floats, int]:
     """Return the totals of one asperity [row, step] at some steps, and how often tables were multiplied.
 

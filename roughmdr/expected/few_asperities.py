@@ -20,7 +20,7 @@ from roughmdr.errors import OutOfRange
 from roughmdr.expected.compute import as_ensemble, compute
 from roughmdr.expected.curve import quantities_of
 from roughmdr.expected.height_rules import RULES, Points, points_of, rule_of
-from roughmdr.expected.node import Problem, QuadratureNode, set_up, totals_of
+from roughmdr.expected.node import MeanProblem, QuadratureNode, set_up, totals_of
 from roughmdr.kernels.adhesion import Adhesion
 from roughmdr.numerics.arguments import Floats
 
@@ -82,7 +82,7 @@ def few_asperities(
     largest = np.abs(exact).max(axis=1)
     if not largest[0] > 0.0:
         raise OutOfRange("no asperity has any force along the path: there is no law to be had from nodes")
-    search = _Search(Problem(source, path, effective_modulus, adhesion, _ROWS), exact, largest, error)
+    search = _Search(MeanProblem(source, path, effective_modulus, adhesion, _ROWS), exact, largest, error)
     rule, nodes = search.over_parameters()
     heights = search.over_heights(nodes)
     reached = search.errors(nodes, heights)
@@ -101,7 +101,7 @@ def few_asperities(
 class _Search(NamedTuple):
     """The search for the fewest nodes."""
 
-    problem: Problem
+    problem: MeanProblem
     exact: Floats
     """The expected law of one asperity: [row, step]."""
     largest: Floats

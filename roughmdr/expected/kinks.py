@@ -13,7 +13,7 @@ from roughmdr.aggregate.totals import DISSIPATED, ERROR, FORCE
 from roughmdr.ensemble import Source
 from roughmdr.ensemble.nodes import PARAMETER_END, Rule
 from roughmdr.errors import RoughmdrError
-from roughmdr.expected.node import Problem, contacts_of, dissipated_of, set_up, totals_of
+from roughmdr.expected.node import MeanProblem, contacts_of, dissipated_of, set_up, totals_of
 from roughmdr.numerics.arguments import Floats
 
 _MAX_STEPS = 32  # more of them take longer than they are worth
@@ -25,12 +25,12 @@ _ORDERS = (40, 56)  # on each side of a cut; the second is used, and its differe
 class KinkSplit(NamedTuple):
     """Scores at which the rule over the one parameter that is drawn has to be split."""
 
-    problem: Problem
+    problem: MeanProblem
     cuts: dict[int, list[float]]
     """The scores, for each step that needs it."""
 
     @classmethod
-    def of(cls, problem: Problem) -> "KinkSplit | None":
+    def of(cls, problem: MeanProblem) -> "KinkSplit | None":
         """Return None without hysteresis, where not exactly one parameter is drawn, or if too many steps have kinks.
 
         Nor is the rule split where it would leave out parameters that matter, or that no contact can have.
@@ -78,7 +78,7 @@ def _is_wide(source: Source) -> bool:
     return False
 
 
-def _depths(problem: Problem, scores: Floats) -> Floats:
+def _depths(problem: MeanProblem, scores: Floats) -> Floats:
     """Return how far below first touch [m] the contacts at some scores detach."""
     nodes = problem.source.nodes(Rule(scores, np.ones_like(scores)))
     return np.array([contact.depth[0] for contact in contacts_of(problem, nodes)])
@@ -96,7 +96,7 @@ def _kinks(path: LoadingPath, ends: list[float], smallest: float, largest: float
     return kinks
 
 
-def _scores(problem: Problem, scores: Floats, depths: Floats, kink: float) -> list[float]:
+def _scores(problem: MeanProblem, scores: Floats, depths: Floats, kink: float) -> list[float]:
     """Return the scores at which the depth passes ``kink``, one in each interval of the scan where it does."""
     from scipy.optimize import brentq
 

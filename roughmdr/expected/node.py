@@ -21,7 +21,7 @@ from roughmdr.numerics.arguments import Floats
 from roughmdr.shapes import SHAPES
 
 
-class Problem(NamedTuple):
+class MeanProblem(NamedTuple):
     """The asperities, the path, the material, and the totals that are to be computed."""
 
     source: Source
@@ -69,7 +69,7 @@ class QuadratureNode(NamedTuple):
     """Likewise."""
 
 
-def contacts_of(problem: Problem, nodes: Nodes) -> list[Contact]:
+def contacts_of(problem: MeanProblem, nodes: Nodes) -> list[Contact]:
     """Return the contact of each node; OutOfRange where one is not representable."""
     shape = SHAPES[problem.source.shape_name]
     columns = {name: column.tolist() for name, column in nodes.parameters.items()}
@@ -80,7 +80,7 @@ def contacts_of(problem: Problem, nodes: Nodes) -> list[Contact]:
     return [Contact.rounded(one, problem.effective_modulus, problem.adhesion) for one in shapes]
 
 
-def set_up(problem: Problem, *rules: Rule) -> list[QuadratureNode]:
+def set_up(problem: MeanProblem, *rules: Rule) -> list[QuadratureNode]:
     """Return the nodes at the scores of a rule, or of one for each random parameter.
 
     Those of one branch have curves up to first touch, and share the rest.
@@ -88,12 +88,12 @@ def set_up(problem: Problem, *rules: Rule) -> list[QuadratureNode]:
     return _nodes(problem, rules, shared=True)
 
 
-def set_up_apart(problem: Problem, *rules: Rule) -> list[QuadratureNode]:
+def set_up_apart(problem: MeanProblem, *rules: Rule) -> list[QuadratureNode]:
     """Return likewise the nodes, each with the whole curve of its contact."""
     return _nodes(problem, rules, shared=False)
 
 
-def _nodes(problem: Problem, rules: tuple[Rule, ...], *, shared: bool) -> list[QuadratureNode]:
+def _nodes(problem: MeanProblem, rules: tuple[Rule, ...], *, shared: bool) -> list[QuadratureNode]:
     nodes, rows, closest = problem.source.nodes(*rules), problem.rows, float(problem.path.separation.min())
     contacts = contacts_of(problem, nodes)
     heights_of = {heights: HeightTable.of(heights) for heights in dict.fromkeys(nodes.heights)}

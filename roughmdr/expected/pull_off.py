@@ -6,7 +6,7 @@ from roughmdr.aggregate import LoadingPath
 from roughmdr.aggregate.totals import AREA, COUNT, FORCE
 from roughmdr.expected.converge import Converged
 from roughmdr.expected.kinks import KinkSplit
-from roughmdr.expected.node import Problem, QuadratureNode, moved
+from roughmdr.expected.node import MeanProblem, QuadratureNode, moved
 from roughmdr.loading.pull_off import WITHOUT_TENSION, PullOff, Unloading, locate, unloadings
 from roughmdr.numerics.arguments import Floats
 
@@ -15,7 +15,7 @@ _FEW, _FEW_OF_MOST = 0.5, 0.01
 of those at closest approach. Heights without an end never all detach."""
 
 
-def pull_off_of(problem: Problem, split: KinkSplit | None, chosen: Converged, force: Floats) -> PullOff:
+def pull_off_of(problem: MeanProblem, split: KinkSplit | None, chosen: Converged, force: Floats) -> PullOff:
     """Return the pull-off, given the rule of the expected law and the force of all asperities [N] at each step.
 
     NaN where no unloading ends out of contact.

@@ -20,7 +20,7 @@ from roughmdr.interaction.newton import Coupling, State, System, first_order
 from roughmdr.numerics.arguments import Floats
 
 if TYPE_CHECKING:
-    from roughmdr.interaction.jkr.equilibrium import Problem
+    from roughmdr.interaction.jkr.equilibrium import PairProblem
     from roughmdr.interaction.jkr.equilibrium import State as AdhesiveState
 
 _RTOL = 0.01  # of a step
@@ -52,7 +52,7 @@ class Punches(NamedTuple):
         return cls(radius, slid, system.coupling, system.tangent, pairs, system.order)
 
     @classmethod
-    def of_adhesive(cls, problem: "Problem", state: "AdhesiveState") -> "Punches":
+    def of_adhesive(cls, problem: "PairProblem", state: "AdhesiveState") -> "Punches":
         """Return the punches of adhesive contacts; all of a problem are in contact."""
         contacts, coupling = state.contacts, problem.coupling
         slid = -contacts.lift * (state.field[1:3] + state.outer[1:3])

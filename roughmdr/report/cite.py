@@ -143,7 +143,7 @@ class _Used(NamedTuple):
     @property
     def grid(self) -> bool:
         """Whether boundary elements are used, or may be."""
-        if any(stage.placed for stage in stages_in(self.table)):
+        if any(stage.on_grid for stage in stages_in(self.table)):
             return True
         if self.result is not None and "grid_points" in self.result.variables:
             return self.result.largest("grid_points") > 0.0

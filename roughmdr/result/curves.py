@@ -37,7 +37,7 @@ def is_ensemble(dataset: "xr.Dataset") -> bool:
 def is_result(dataset: "xr.Dataset") -> bool:
     """Return whether a dataset holds curves over the steps of a path."""
     controlled = any(name in dataset.coords and "step" in dataset[name].dims for name in STEP_COORDINATES)
-    return "branch" in dataset.coords and controlled and bool(curves_of(ResultView(dataset)))
+    return "branch" in dataset.coords and controlled and bool(stored_curves(ResultView(dataset)))
 
 
 def result_of(dataset: "xr.Dataset") -> ResultView:
@@ -51,7 +51,7 @@ def result_of(dataset: "xr.Dataset") -> ResultView:
     return ResultView(dataset)
 
 
-def curves_of(result: ResultView) -> list[str]:
+def stored_curves(result: ResultView) -> list[str]:
     """Return the variables with a curve, or a mean curve, over the steps; those of references included."""
     suffix = "_mean" if result.keeps_statistics else ""
     names = (f"{name}{suffix}" for name in LAW_VARIABLES)
@@ -73,7 +73,7 @@ def curve(result: ResultView, name: str, asked: str) -> "xr.DataArray":
     if name == "force" and _holds(dataset, "pressure") and "nominal_area" in dataset:
         total = curve(result, "pressure", asked) * alone(dataset["nominal_area"])
         return total.assign_attrs(CURVE_VARIABLES[name].attrs)
-    held_names = [each.removesuffix("_mean") for each in curves_of(result)]
+    held_names = [each.removesuffix("_mean") for each in stored_curves(result)]
     allowed = list(dict.fromkeys([*held_names, result.control]))
     if name in PER_AREA and "nominal_area" not in dataset and _holds(dataset, PER_AREA[name]):
         raise StoreError(

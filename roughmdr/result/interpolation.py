@@ -13,10 +13,10 @@ from roughmdr.result.curves import (
     Branch,
     alone,
     curve,
-    curves_of,
     is_reference,
     result_of,
     separation_of,
+    stored_curves,
     whole,
 )
 from roughmdr.result.view import ResultView
@@ -84,7 +84,7 @@ def at_value(dataset: "xr.Dataset", name: str, values: ArrayLike, branch: str) -
 def _curves(result: ResultView, name: str) -> "dict[str, xr.DataArray]":
     """Return the separation, all curves, and those that follow from them, but those of ``name`` itself."""
     dataset = result.dataset
-    curves = {each: alone(whole(dataset[each])) for each in curves_of(result)}
+    curves = {each: alone(whole(dataset[each])) for each in stored_curves(result)}
     suffix = "_mean" if result.keeps_statistics else ""
     for derived, total in PER_AREA.items():
         if f"{total}{suffix}" in curves and f"{derived}{suffix}" not in curves and "nominal_area" in dataset:

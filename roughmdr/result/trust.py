@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Iterator, Mapping
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -23,9 +23,6 @@ from roughmdr.result.view import ResultView
 from roughmdr.schema.units import format_quantity
 from roughmdr.stages import stages_in
 from roughmdr.variables import LATERAL
-
-if TYPE_CHECKING:
-    pass
 
 _TOLD = 0.01  # parts of the model error below this are not told
 _TINY = 1e-6

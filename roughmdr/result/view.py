@@ -94,7 +94,7 @@ class ResultView:
 
     @property
     def abscissa(self) -> str:
-        """The axis of curves: the controlled quantity, or what moves as the travel to a preload says."""
+        """The axis of curves: the controlled quantity; to a preload the remote position or the separation."""
         if self.control != TRAVEL.name:
             return self.control
         return REMOTE.name if REMOTE.name in self.curves else SEPARATION.name
@@ -127,8 +127,10 @@ class ResultView:
     @cached_property
     def sweep(self) -> dict[str, int]:
         """The swept dimensions with their sizes."""
-        dims = self.variables["status"].dims if "status" in self.variables else ()
-        return {name: self.sizes[name] for name in dims if name != "realization"}
+        over = [self.variables[name] for name in ("status", *self.variables) if name in self.variables]
+        arrays = over[:1] if "status" in self.variables else [each for each in over if "step" in each.dims]
+        dims = dict.fromkeys(dim for each in arrays for dim in each.dims)
+        return {name: self.sizes[name] for name in dims if name not in ("realization", "step")}
 
     @cached_property
     def cells(self) -> list[tuple[int, ...]]:
@@ -216,8 +218,8 @@ class ResultView:
     def mean(self, name: str) -> tuple[Floats, Floats]:
         """Return the mean of a variable and its standard error, over the swept keys, and over step for a curve.
 
-        NaN for the error of a single realisation, and for both where none was computed. Of the numbers of pull-offs
-        those that there are count.
+        NaN for the error of a single realisation, and for both where none was computed. Numbers of pull-offs are
+        averaged over the realisations that have one.
         """
         if f"{name}_mean" in self.variables:
             return self.variables[f"{name}_mean"].values, self.variables[f"{name}_sem"].values
@@ -235,7 +237,7 @@ class ResultView:
 
     @property
     def pull_off_counts(self) -> Floats:
-        """How many realisations of each cell have a pull-off, in a part of a result those that it holds."""
+        """The number of realisations of each cell with a pull-off; a part of a result counts its own."""
         if "pull_off_force" in self.variables:
             having: Floats = np.isfinite(self.variables["pull_off_force"].values).sum(axis=-1, dtype=np.float64)
             return having

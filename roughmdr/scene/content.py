@@ -22,7 +22,7 @@ from roughmdr.scene.sweep import Sweep
 from roughmdr.schema.material import effective_modulus
 from roughmdr.schema.quantities import Section, WholeNumber
 from roughmdr.stages import STAGES
-from roughmdr.stages.given import AnySection
+from roughmdr.stages.given_scene import AnySection
 from roughmdr.stages.stage import Stage
 
 _NEGLIGIBLE = 0.01  # of the required error
@@ -106,8 +106,7 @@ class _Sections(Section):
     @property
     def stages(self) -> tuple[Stage, ...]:
         """The stages that the scene has, innermost first."""
-        given = (getattr(self, stage.key) for stage in STAGES)
-        return tuple(section for section in given if section is not None)
+        return tuple([section for stage in STAGES if (section := getattr(self, stage.key)) is not None])
 
     def stage(self, kind: type[AnySection]) -> AnySection | None:
         """Return the stage of a kind; None where the scene has none."""
@@ -131,7 +130,7 @@ class _Sections(Section):
     @property
     def placed(self) -> bool:
         """Whether realisations need the positions of their asperities, for the law or beside it."""
-        return self.needs_positions or any(stage.placed for stage in self.stages)
+        return self.needs_positions or any(stage.on_grid for stage in self.stages)
 
     @property
     def nominal_area(self) -> float | None:

@@ -128,10 +128,11 @@ class Scene(Sections):
         return self
 
     def _check_stages(self) -> None:
-        if len(alone := [key for stage in reversed(self.stages) if (key := stage.alone(self))]) > 1:
+        given = [(stage, getattr(self, stage.key)) for stage in reversed(STAGES)]
+        if len(alone := [key for stage, section in given if (key := stage.alone(self, section))]) > 1:
             raise mismatch(alone[0], f"does not go with {alone[1]}: each is of the elastic law under a flat")
-        for stage in reversed(STAGES):
-            if (section := self.stage(stage)) is None:
+        for stage, section in given:
+            if section is None:
                 stage.check_without(self)
             else:
                 section.check(self)

@@ -10,7 +10,7 @@ from pydantic import BeforeValidator, model_validator
 from roughmdr.errors import OutOfRange
 from roughmdr.schema.faults import mismatch
 from roughmdr.schema.quantities import EntryError, Quantity
-from roughmdr.stages.given import Given
+from roughmdr.stages.given_scene import Given
 from roughmdr.stages.stage import Contacts, Law, Stage
 from roughmdr.variables import CONDUCTANCES
 
@@ -97,7 +97,7 @@ class Conduction(Stage):
         return of_contacts(names)
 
     def law(self, scene: Given, contacts: Contacts) -> Law:
-        """Return the law with the conductances that it is asked for; OutOfRange where one is not representable."""
+        """Return the law with all conductances; OutOfRange where one is not representable."""
 
         def law(path: "Path", names: list[str]) -> "LoadSeparation":
             found = contacts.law(path, self.inner_variables(names))

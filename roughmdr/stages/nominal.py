@@ -12,7 +12,7 @@ from roughmdr.schema.faults import mismatch
 from roughmdr.schema.quantities import EntryError, Quantity
 from roughmdr.schema.units import DIMENSIONLESS
 from roughmdr.shapes import SCENE_SHAPES, SHAPES, Shape
-from roughmdr.stages.given import Given
+from roughmdr.stages.given_scene import Given
 from roughmdr.stages.stage import Contacts, Law, Stage
 from roughmdr.variables import NOMINAL_VARIABLES
 
@@ -81,13 +81,13 @@ class _Nominal(Stage):
         return SHAPES[self.shape](**self._given)
 
     def check(self, scene: Given) -> None:
-        """Raise a mismatch with what presses a flat, other paths, variables that it lacks, and other than random
-        asperities on a patch.
+        """Raise a mismatch with [interaction], boundary elements, other paths than separations, variables it lacks, or
+        asperities without an expected law on a patch.
         """
         if scene.interaction is not None:
             raise mismatch("nominal", "does not go with [interaction]: the half-space gives way under all asperities")
         for stage in scene.stages:
-            if stage.placed:
+            if stage.on_grid:
                 raise mismatch("nominal", f"does not go with [{stage.key}]: boundary elements press a flat")
         if scene.path.control != "separation":
             raise mismatch("nominal", f"goes with path.separation, not with path.{scene.path.key}")
@@ -109,9 +109,10 @@ class _Nominal(Stage):
         if reason := _against_adhesion(scene.adhesion_model, SHAPES[scene.asperities.shape_name]):
             raise mismatch("adhesion.model", f"does not go with [nominal]: {reason}")
 
-    def alone(self, scene: Given) -> str:
+    @classmethod
+    def alone(cls, scene: Given, section: "_Nominal | None") -> str:
         """Return the key of the section."""
-        return self.key
+        return "" if section is None else cls.key
 
     def more_variables(self, names: list[str]) -> list[str]:
         """Return the variables of the contact of the body."""

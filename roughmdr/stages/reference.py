@@ -11,7 +11,7 @@ from roughmdr.errors import SceneError
 from roughmdr.schema.faults import mismatch
 from roughmdr.schema.quantities import Quantity
 from roughmdr.stages.conduction import RADIUS, Conduction, of_contacts
-from roughmdr.stages.given import Given
+from roughmdr.stages.given_scene import Given
 from roughmdr.stages.stage import Contacts, Drawn, Law, Stage
 from roughmdr.variables import REFERENCE_VARIABLES
 
@@ -42,7 +42,7 @@ class Reference(Stage):
     words: ClassVar[Mapping[str, str]] = {"model": "Method", "error": "Relative error of its force by the grid"}
     small_scene: ClassVar[Mapping[str, Any]] = {"reference": {"model": "boundary_elements", "error": 0.5}}
     swept = False
-    placed = True
+    on_grid = True
 
     model: Literal["boundary_elements"]
     error: Annotated[float, BeforeValidator(Quantity("1", at_least=_ERRORS[0], at_most=_ERRORS[1]))] = 0.02
@@ -62,7 +62,7 @@ class Reference(Stage):
         return "the reference presses single surfaces, which the expected law does not know"
 
     def check_read(self, scene: Given, ensemble: "Ensemble") -> None:
-        """Raise SceneError where asperities that are read lack positions, or a patch that repeats."""
+        """Raise SceneError where asperities from a file have no positions, or must repeat and have no patch."""
         from roughmdr.interaction.placed import sides_of
 
         if not {"x", "y"} <= ensemble.positions.keys():
@@ -162,7 +162,7 @@ class Reference(Stage):
         told = (reference > 0.0) & (reference >= LIGHT * largest) & np.isfinite(force)
         if not told.any():
             missed = "" if float(np.nanmax(error, initial=0.0)) == 0.0 else ", but may have missed light contacts"
-            yield "reference", f"boundary elements found no force along the whole path{missed}"
+            yield cls.key, f"boundary elements found no force along the whole path{missed}"
             return
         weight = np.where(largest > 0.0, np.maximum(reference, LIGHT * largest), 1.0)
         own = float(np.nanmax(error * reference / weight))

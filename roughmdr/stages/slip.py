@@ -43,11 +43,11 @@ _MAX_RATIO = 1e-6 / float(np.finfo(float).eps)  # of numbers to their difference
 
 
 def normal_variables(names: Iterable[str]) -> list[str]:
-    """Return the variables of the normal law that variables follow from, or which they are."""
+    """Return the normal variables that these are computed from; a normal variable stands for itself."""
     return list(dict.fromkeys(each for name in names for each in _NEEDED.get(name, (name,))))
 
 
-class Tangential(NamedTuple):
+class SlipConstants(NamedTuple):
     """The constants of a contact under tangential load."""
 
     effective_modulus: float
@@ -68,7 +68,7 @@ class Tangential(NamedTuple):
 
 
 def partial_slip(
-    law: Law, separation: float, memory: Masing, tangential: Tangential, names: list[str]
+    law: Law, separation: float, memory: Masing, tangential: SlipConstants, names: list[str]
 ) -> LoadSeparation:
     """Return the law along a lateral path at a constant separation [m], with the separation as a variable.
 
@@ -105,7 +105,7 @@ class FirstCurve(NamedTuple):
     """The normal law at each of ``separation``."""
     separation: Floats
     """That which is held, and those of the normal contacts whose contacts are the stick discs [m]."""
-    tangential: Tangential
+    tangential: SlipConstants
 
     @property
     def tangential_force(self) -> Floats:

@@ -1,15 +1,16 @@
-"""A section of a scene that makes another law of that of its contacts, or adds to it: one class answers for all of it.
+"""Stage: the base of sections of a scene that change the law of its contacts, or add to it.
 
 A stage is a table of the scene. Whatever the program asks of such a section, it asks through the methods below, each of
 which has an answer for a section that changes nothing. None of them imports physics before it is needed: scenes are
 read without.
 """
 
+import math
 from collections.abc import Callable, Iterator, Mapping
-from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, TypeVar
+from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Self
 
 from roughmdr.schema.quantities import Section
-from roughmdr.stages.given import Given
+from roughmdr.stages.given_scene import Given
 
 if TYPE_CHECKING:
     from roughmdr.aggregate.law import LoadSeparation
@@ -19,7 +20,6 @@ if TYPE_CHECKING:
 
 Law = Callable[["Path", list[str]], "LoadSeparation"]
 """A path and the variables asked for -> the law along it, which may have other variables too."""
-AnyStage = TypeVar("AnyStage", bound="Stage")
 
 
 class Drawn(NamedTuple):
@@ -57,20 +57,24 @@ class Stage(Section):
     """Whether its keys may be swept."""
     fitted: ClassVar[bool] = True
     """Whether its keys may be fitted to a measured normal law."""
-    placed: ClassVar[bool] = False
-    """Whether it needs the positions of the asperities."""
+    on_grid: ClassVar[bool] = False
+    """Whether it presses the surface itself by boundary elements, which takes the positions of the asperities."""
     flat: ClassVar[bool] = True
-    """Whether a flat presses all asperities alike; else the law is the expected one of a body of its own."""
+    """False where the section brings a body of its own in place of the flat, of which only the expected law exists."""
     unlike: ClassVar[str] = ""
-    """The difference to elastic contacts under a flat, for which theories and coupling are; empty if there is none."""
-    most_foreseen: ClassVar[int] = 60
-    """Number of steps at most at which the law is foreseen."""
+    """How the law differs from that of elastic contacts under a flat, the only one that theories and coupling describe,
+    in words; empty if it does not.
+    """
+    most_foreseen: ClassVar[float] = math.inf
+    """Largest number of steps at which ``plan`` foresees the law."""
     more_separations: ClassVar[int] = 0
     """Number of separations, beside those of the steps, at which the law of the contacts is needed."""
     own_variables: ClassVar[tuple[str, ...]] = ()
     """Variables of [output] that a scene without the section does not have."""
+    about_absent: ClassVar[str] = ""
+    """Part that is left out of a scene without the section."""
     noted: ClassVar[str] = ""
-    """Attribute of results, and name in summaries, of ``notes``."""
+    """Attribute of results, and name in summaries, of ``notes``; one of ``RESULT_ATTRIBUTES``."""
 
     # the scene
 
@@ -91,8 +95,12 @@ class Stage(Section):
     def check(self, scene: Given) -> None:
         """Raise a mismatch where the scene lacks something that the section needs, or it does not go with another."""
 
-    def alone(self, scene: Given) -> str:
-        """Return the key of what makes another law of the elastic one under a flat, which only one may; else empty."""
+    @classmethod
+    def alone(cls, scene: Given, section: Any) -> str:
+        """Return the key at fault if two sections need the plain elastic law under a flat; empty if this does not.
+
+        ``section`` is None where the scene has none.
+        """
         return ""
 
     def reason_against(self, estimator: str) -> str:
@@ -105,10 +113,10 @@ class Stage(Section):
         """Raise SceneError where the section does not go with a path of these values, in SI."""
 
     def check_read(self, scene: Given, ensemble: "Ensemble") -> None:
-        """Raise SceneError where asperities that are read, not drawn, lack what the section needs."""
+        """Raise SceneError where asperities that are read, not drawn, lack what a section ``on_grid`` needs."""
 
     def more_variables(self, names: list[str]) -> list[str]:
-        """Return the variables of the result that the section adds to those of the output."""
+        """Return result variables that the section adds, given those asked for; none under a machine or sideways."""
         return []
 
     def coordinates(self, values: "Floats") -> "dict[str, Floats]":
@@ -116,28 +124,25 @@ class Stage(Section):
         return {}
 
     def clear_above(self, scene: Given) -> float:
-        """Return by how much [m] the start "clear" is higher than without the section."""
+        """Return the height [m] that the section adds to the start "clear"."""
         return 0.0
 
     @classmethod
     def left_out(cls, scene: Given, section: Any) -> Iterator[str]:
-        """Yield what is left out, as lines "part: reason", because of the ``section``, or because it is None."""
+        """Yield lines "part: reason" on what the scene leaves out; ``section`` is None where it has none."""
         if section is None:
             yield f"{cls.about_absent}: the scene has no [{cls.key}]"
-
-    about_absent: ClassVar[str] = ""
-    """Part that is left out of a scene without the section."""
 
     def notes(self, scene: Given) -> Iterator[str]:
         """Yield what the theory of the section neglects, for ``noted``."""
         yield from ()
 
-    def coarse(self: AnyStage) -> AnyStage:
+    def coarse(self) -> Self:
         """Return the section as its law is foreseen: with larger errors, in less time."""
         return self
 
     def expected_seconds(self, nodes: int, steps: int, *, adhering: bool) -> float | None:
-        """Return about how long an expected law takes [s] of so many nodes; None where as long as that of a flat."""
+        """Return about how long an expected law of so many nodes takes [s]; None to take the estimate for a flat."""
         return None
 
     def beside(self, scene: Given, separations: int, *, finest: bool) -> tuple[float, float]:
@@ -154,17 +159,20 @@ class Stage(Section):
     # the law
 
     def inner_variables(self, names: list[str]) -> list[str]:
-        """Return the variables of the law of the contacts that these variables follow from."""
+        """Return the variables that ``law`` asks of the inner law for these; they are compiled before a run."""
         return names
 
     def law(self, scene: Given, contacts: Contacts) -> Law:
-        """Return the law of a scene from that of its contacts."""
+        """Return the law of a scene from that of its contacts.
+
+        Under a machine that one has found the separations: a section that changes the force does not go with one.
+        """
         return contacts.law
 
     # the result
 
     def attributes(self) -> dict[str, str]:
-        """Return attributes of the result."""
+        """Return attributes of the result, each one of ``RESULT_ATTRIBUTES``, which checksums cover."""
         return {}
 
     @classmethod
@@ -174,5 +182,5 @@ class Stage(Section):
 
     @classmethod
     def papers(cls, table: Mapping[str, Any], variables: list[str]) -> Iterator[tuple[str, str]]:
-        """Yield what a paper is cited for, and its key, of a scene with these variables."""
+        """Yield what a paper is cited for and its key in ``report.citations_of_stages``; for variables asked."""
         yield from ()

@@ -11,7 +11,7 @@ from roughmdr.schema.faults import mismatch
 from roughmdr.schema.quantities import Quantity
 from roughmdr.schema.two_bodies import dundurs_beta, stiffness_ratio
 from roughmdr.stages.conduction import RADIUS
-from roughmdr.stages.given import Given
+from roughmdr.stages.given_scene import Given
 from roughmdr.stages.stage import Contacts, Law, Stage
 from roughmdr.variables import DEFAULT_LATERAL_VARIABLES, TANGENTIAL_VARIABLES
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from roughmdr.aggregate.law import LoadSeparation
     from roughmdr.loading.lateral import LateralPath, Path
     from roughmdr.numerics.arguments import Floats
-    from roughmdr.stages.slip import Tangential as Constants
+    from roughmdr.stages.slip import SlipConstants
 
 _RATIOS = 0.5, 1.5  # isotropic bodies have 2/3 (nu = 1/2) to 4/3 (nu = -1)
 _STICKING, _LONE_RADIUS = "tangential_stiffness", "contact_radius_sum"
@@ -70,12 +70,12 @@ class Tangential(Stage):
             raise mismatch(key, f"is missing; {subject} needs it")
 
     def check(self, scene: Given) -> None:
-        """Raise a mismatch where lateral forces are asked for that other sections do not go with, or do not tell."""
+        """Raise a mismatch where lateral forces are asked for and another section forbids them, or G*/E* is unknown."""
         lateral, bodies = scene.path.lateral is not None, _bodies_of(scene)
+        subject = _asked(scene)
         if self.stiffness_ratio is not None and bodies is not None:
-            _asked(scene)
             raise mismatch("tangential.stiffness_ratio", "follows from the modulus and poisson of [material] already")
-        if not (subject := _asked(scene)):
+        if not subject:
             return
         if lateral and self.friction is None:
             raise mismatch("tangential.friction", f"is missing; {subject} needs it")
@@ -88,11 +88,12 @@ class Tangential(Stage):
             reason = "the shear of adhesive contacts is no difference of normal contacts"
             raise mismatch("path.lateral", f"does not go with adhesion: {reason}")
         for stage in scene.stages:
-            if lateral and stage.placed:
+            if lateral and stage.on_grid:
                 reason = "boundary elements press along the normal only"
                 raise mismatch(stage.key, f"does not go with {subject}: {reason}")
 
-    def alone(self, scene: Given) -> str:
+    @classmethod
+    def alone(cls, scene: Given, section: "Tangential | None") -> str:
         """Return the key of the lateral path."""
         return "" if scene.path.lateral is None else "path.lateral"
 
@@ -120,13 +121,13 @@ class Tangential(Stage):
         bodies = _bodies_of(scene)
         return self.stiffness_ratio if bodies is None else stiffness_ratio(*bodies)
 
-    def constants(self, scene: Given) -> "Constants":
+    def constants(self, scene: Given) -> "SlipConstants":
         """Return the constants of the contacts, of a scene that tells G*/E*."""
-        from roughmdr.stages.slip import Tangential as Constants
+        from roughmdr.stages.slip import SlipConstants
 
         ratio = self.ratio(scene)
         assert ratio is not None  # as ``check`` makes sure
-        return Constants(scene.effective_modulus, ratio, math.nan if self.friction is None else self.friction)
+        return SlipConstants(scene.effective_modulus, ratio, math.nan if self.friction is None else self.friction)
 
     def inner_variables(self, names: list[str]) -> list[str]:
         """Return the variables of the normal law that lateral forces follow from."""
@@ -191,7 +192,7 @@ class Tangential(Stage):
 
 
 def _asked(scene: Given) -> str:
-    """Return what of a scene needs lateral forces, in words; empty where nothing does, a mismatch where it cannot."""
+    """Return in words which entry needs lateral forces, or an empty text; a mismatch where it lacks path.lateral."""
     lateral = scene.path.lateral is not None
     asked = [name for name in scene.output.variables if name in TANGENTIAL_VARIABLES]
     if not lateral and (wrong := [name for name in asked if name != _STICKING]):

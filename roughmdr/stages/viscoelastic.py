@@ -11,7 +11,7 @@ from roughmdr.errors import Fault, SceneError
 from roughmdr.schema.faults import mismatch
 from roughmdr.schema.quantities import EntryError, Quantity, Section
 from roughmdr.schema.units import format_quantity
-from roughmdr.stages.given import Given
+from roughmdr.stages.given_scene import Given
 from roughmdr.stages.stage import Contacts, Law, Stage
 from roughmdr.variables import DEFAULT_VARIABLES, TIME
 
@@ -22,9 +22,8 @@ if TYPE_CHECKING:
     from roughmdr.stages.viscoelasticity.motion import FlatMotion
 
 _Speed = Annotated[float, BeforeValidator(Quantity("m/s", above=0.0))]
-_NOT_COMPUTED = ("stiffness", "energy", "dissipated_energy", "machine_dissipated_energy")
+_NOT_COMPUTED = ("stiffness", "energy", "dissipated_energy", "machine_dissipated_energy", "tangential_stiffness")
 """Variables that a viscoelastic law does not have."""
-_INDEPENDENT = "its asperities are independent and do not adhere"
 
 
 class RelaxationTerm(Section):
@@ -83,7 +82,7 @@ class Viscoelastic(Stage):
     def check(self, scene: Given) -> None:
         """Raise a mismatch with adhesion, asperities that feel each other, other paths, and variables that it lacks."""
         others = {"adhesion": scene.work > 0.0, "interaction": scene.interaction is not None}
-        others |= {stage.key: stage.placed for stage in scene.stages}
+        others |= {stage.key: stage.on_grid for stage in scene.stages}
         for name, other in others.items():
             if other:
                 raise mismatch(
@@ -94,9 +93,10 @@ class Viscoelastic(Stage):
         if unknown := [name for name in scene.output.variables if name in _NOT_COMPUTED]:
             raise mismatch("output.variables", f"{', '.join(unknown)} cannot be computed with [viscoelastic]")
 
-    def alone(self, scene: Given) -> str:
+    @classmethod
+    def alone(cls, scene: Given, section: "Viscoelastic | None") -> str:
         """Return the key of the section."""
-        return self.key
+        return "" if section is None else cls.key
 
     def check_path(self, values: "Floats") -> None:
         """Raise SceneError unless separations [m] fall, stay at the lowest and rise, in a finite time."""

@@ -21,7 +21,7 @@ def _pairwise(scene: Any) -> bool:
 
 
 def _referred(scene: Any) -> bool:
-    return any(stage.placed for stage in scene.stages)
+    return any(stage.on_grid for stage in scene.stages)
 
 
 def _adhering(scene: Any) -> bool:

@@ -21,7 +21,7 @@ from roughmdr.aggregate.totals import FORCE
 from roughmdr.ensemble.nodes import Rule
 from roughmdr.expected.converge import FIRST_ORDER, converge_at_kinks
 from roughmdr.expected.detached import PartialRule
-from roughmdr.expected.node import Problem, set_up, totals_of
+from roughmdr.expected.node import MeanProblem, set_up, totals_of
 from roughmdr.numerics.arguments import Floats
 from roughmdr.scene import read
 
@@ -349,10 +349,10 @@ def test_weights_of_parts_integrate_polynomials() -> None:
     np.testing.assert_allclose(below[-1], rule.weights, rtol=1e-9)
 
 
-def problem_of(case: dict[str, object], separation: Floats) -> Problem:
+def problem_of(case: dict[str, object], separation: Floats) -> MeanProblem:
     made = read(made_of(case, separation.tolist()))
     path = LoadingPath.along(separation, unload=False, adhesive=True)
-    return Problem(made.asperities, path, made.effective_modulus, made.adhesion_model, (FORCE,))
+    return MeanProblem(made.asperities, path, made.effective_modulus, made.adhesion_model, (FORCE,))
 
 
 def test_the_error_falls_exponentially_with_the_order() -> None:

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from roughmdr.ensemble.ensemble import Ensemble
 from roughmdr.interaction.jkr.account import Account, Adhering
-from roughmdr.interaction.jkr.equilibrium import Drive, Problem, State, Step, alone
+from roughmdr.interaction.jkr.equilibrium import Drive, PairProblem, State, Step, alone
 from roughmdr.interaction.jkr.path import solve_path
 from roughmdr.interaction.jkr.tangent import Tangent
 from roughmdr.interaction.settings import Boundary, Interaction
@@ -150,7 +150,7 @@ def test_a_lone_contact_on_a_patch_goes_to_the_lone_one_as_the_patch_grows() -> 
     assert off[3] == pytest.approx(off[2], rel=0.02)  # as 1/side
 
 
-def at_rest(ensemble: Ensemble, units: Units, h: Floats, order: int) -> list[tuple[Problem, State]]:
+def at_rest(ensemble: Ensemble, units: Units, h: Floats, order: int) -> list[tuple[PairProblem, State]]:
     """Return the problem and the state at each separation [d0] where there are contacts."""
     states = []
     stand = Account.stand
@@ -168,7 +168,7 @@ def at_rest(ensemble: Ensemble, units: Units, h: Floats, order: int) -> list[tup
     return states
 
 
-def hessian(problem: Problem, state: State) -> tuple[Floats, Floats]:
+def hessian(problem: PairProblem, state: State) -> tuple[Floats, Floats]:
     """Return the second derivatives of the energy over all radii and loads, and those over radii alone."""
     problem, state = alone(problem, state)
     tangent = Tangent(problem, state, Drive(0.0, np.zeros_like(state.outer)))

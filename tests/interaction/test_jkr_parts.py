@@ -15,7 +15,7 @@ from roughmdr.interaction.interface import Asperities
 from roughmdr.interaction.jkr import coincident, equilibrium, factors
 from roughmdr.interaction.jkr.bracket import Bracket
 from roughmdr.interaction.jkr.contacts import Contacts
-from roughmdr.interaction.jkr.equilibrium import Drive, Problem, State, Step, evaluate
+from roughmdr.interaction.jkr.equilibrium import Drive, PairProblem, State, Step, evaluate
 from roughmdr.interaction.jkr.factors import Factors
 from roughmdr.interaction.jkr.front import jkr_kernels
 from roughmdr.interaction.jkr.interface import JkrKernels
@@ -60,7 +60,7 @@ def flanks(law: JkrKernels, asperities: Asperities, natural: Floats, h: float) -
     return found
 
 
-def guess(shape: Shape, at: Floats, order: int, *, overlapping: bool = False) -> tuple[Problem, State]:
+def guess(shape: Shape, at: Floats, order: int, *, overlapping: bool = False) -> tuple[PairProblem, State]:
     """Return contacts near those alone at different indentations, of which none is in equilibrium.
 
     Overlapping ones are brought so near that some pairs share half, and others less or more.
@@ -79,7 +79,7 @@ def guess(shape: Shape, at: Floats, order: int, *, overlapping: bool = False) ->
         load[i] = 1.2 * law.lone_load(t[i], Surface(depth), WORK, i, asperities)
     inside = np.ones(len(at), np.bool_)
     near = coincident.Near(law, asperities, natural, coincident.find(at, radius * overlapping, None))
-    problem = Problem(law, asperities, coupling, near, order, WORK, natural)
+    problem = PairProblem(law, asperities, coupling, near, order, WORK, natural)
     return problem, evaluate(problem, inside, t, load, -1e-6, np.zeros((5, len(at))))
 
 

@@ -72,3 +72,14 @@ def test_arrays_a_dataset_and_one_in_chunks_are_read_alike(keep: str, path: dict
         assert [leg.branch for leg in view.legs] == [leg.branch for leg in views[0].legs]
     assert views[0].estimator == "sampled"
     np.testing.assert_array_equal(np.concatenate([leg.steps for leg in views[1].legs]), np.arange(found.sizes["step"]))
+
+
+def test_a_part_of_a_result_without_status_is_read() -> None:
+    """A sweep whose separations differ from cell to cell, of which a user keeps some variables only."""
+    path = {"separation": {"start": "3 sigma", "stop": "1 sigma", "steps": 20}}
+    found = rm.run(scene(path=path, sweep={"asperities.height.std": ["1 um", "2 um"]}, batch={"realizations": 2}))
+    part = found[["force", "contact_area"]]
+    for each in (part, found.drop_vars("status")):
+        assert ResultView(each).sweep == {"asperities_height_std": 2}
+        law = each.roughmdr.fit_power_law("contact_area", "force")
+        np.testing.assert_array_equal(law.exponent, found.roughmdr.fit_power_law("contact_area", "force").exponent)

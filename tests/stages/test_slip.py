@@ -18,7 +18,7 @@ from roughmdr.loading.masing import Masing
 from roughmdr.loading.pull_off import WITHOUT_TENSION
 from roughmdr.numerics.arguments import Floats
 from roughmdr.schema.two_bodies import dundurs_beta, stiffness_ratio
-from roughmdr.stages.slip import FirstCurve, Tangential, partial_slip
+from roughmdr.stages.slip import FirstCurve, SlipConstants, partial_slip
 
 E, RATIO, MU = 4e9, 0.8, 0.3
 FORCE, STIFFNESS, LOSS = "tangential_force", "tangential_stiffness", "friction_energy"
@@ -34,7 +34,7 @@ def law_of(
         path = LoadingPath.along(separation, unload=False, adhesive=False)
         return simulate(Problem(asperities, modulus, Adhesion()), path, names)
 
-    found = partial_slip(normal, h, Masing.along(u), Tangential(modulus, RATIO, mu), list(names))
+    found = partial_slip(normal, h, Masing.along(u), SlipConstants(modulus, RATIO, mu), list(names))
     return [found.variables[name] for name in names]
 
 
@@ -203,7 +203,9 @@ def test_special_pairs_of_bodies() -> None:
     ],
 )
 def test_six_digits_must_be_left_but_of_full_slip(force: list[float], way: float, fits: bool, unit: float) -> None:
-    first = FirstCurve({"force": unit * np.array(force)}, unit * np.array([1.0, 1.0 + way]), Tangential(E, RATIO, MU))
+    first = FirstCurve(
+        {"force": unit * np.array(force)}, unit * np.array([1.0, 1.0 + way]), SlipConstants(E, RATIO, MU)
+    )
     if fits:
         first.check_digits()
         return
@@ -220,5 +222,5 @@ def test_a_lateral_path_has_no_pull_off() -> None:
         return law._replace(variables={"force": force}, pull_off=WITHOUT_TENSION)
 
     path = Masing.along(np.array([1e-6, 2e-6]))
-    found = partial_slip(normal, 0.0, path, Tangential(E, RATIO, MU), [FORCE]).pull_off
+    found = partial_slip(normal, 0.0, path, SlipConstants(E, RATIO, MU), [FORCE]).pull_off
     assert math.isnan(found.force)

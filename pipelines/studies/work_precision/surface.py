@@ -18,7 +18,7 @@ from roughmdr.batch import tasks
 from roughmdr.batch.plan import Cell, make_plan
 from roughmdr.batch.realization import simulate_realization
 from roughmdr.ensemble.nodes import Rule
-from roughmdr.expected.node import Problem, set_up, totals_of
+from roughmdr.expected.node import MeanProblem, set_up, totals_of
 from roughmdr.runner.backend import Backend
 from roughmdr.runner.run import execute
 from roughmdr.scene import Scene, read
@@ -85,7 +85,7 @@ def simulate(rough: Rough, estimator: str, realization: int = 0) -> Curve:
 def _by_nodes(rough: Rough, order: float) -> Callable[[], Curve]:
     """Prepare the expected curve with so many nodes over the radii, kinks in the radius left unresolved."""
     scene, path, *_ = _cell(rough)
-    problem = Problem(scene.asperities, path, scene.effective_modulus, scene.adhesion_model, (FORCE, AREA))
+    problem = MeanProblem(scene.asperities, path, scene.effective_modulus, scene.adhesion_model, (FORCE, AREA))
 
     def action() -> Curve:
         nodes = set_up(problem, Rule.smooth(int(order)))

@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from roughmdr.interaction.jkr.bracket import Bracket
-from roughmdr.interaction.jkr.equilibrium import Drive, Problem, State, Step, evaluate, moved
+from roughmdr.interaction.jkr.equilibrium import Drive, PairProblem, State, Step, evaluate, moved
 from roughmdr.interaction.jkr.factors import Factors, Lead
 from roughmdr.interaction.jkr.newton import newton
 from roughmdr.interaction.jkr.tangent import Tangent, leading
@@ -63,7 +63,7 @@ class Fold(NamedTuple):
     """Whether its radius grows."""
 
 
-def piece(problem: Problem, here: Place, drive: Drive) -> tuple[Place, Fold | None]:
+def piece(problem: PairProblem, here: Place, drive: Drive) -> tuple[Place, Fold | None]:
     """Return a place further along the path, or the fold before it; all asperities are in contact.
 
     NoEquilibriumError where neither is found.
@@ -89,12 +89,12 @@ def piece(problem: Problem, here: Place, drive: Drive) -> tuple[Place, Fold | No
     return _led(problem, here, drive, Fast(lead, bool(rate.radius[lead] > 0.0), float(state.t[lead]), slope))
 
 
-def _further(problem: Problem, here: Place, rate: Step, change: float, drive: Drive) -> State:
+def _further(problem: PairProblem, here: Place, rate: Step, change: float, drive: Drive) -> State:
     """Return the guess at a place further on, by the rate of change."""
     return moved(problem, here.state, Step(change * rate.radius, change * rate.load, change), drive)
 
 
-def _to(problem: Problem, here: Place, lead: Lead, t: float, drive: Drive) -> tuple[State, float]:
+def _to(problem: PairProblem, here: Place, lead: Lead, t: float, drive: Drive) -> tuple[State, float]:
     """Return the guess where the contact that leads has a state, and its place."""
     state, number, rate = here.state, lead.asperity, lead.by_place
     change = (t - state.t[number]) * state.contacts.slope[number] / rate.radius[number]
@@ -107,7 +107,7 @@ def _at_corner(state: State) -> Fold | None:
     return Fold(least, upwards=False) if state.t[least] < LEAST_STATE else None
 
 
-def _stable(problem: Problem, here: Place, new: State, along: float) -> Place | None:
+def _stable(problem: PairProblem, here: Place, new: State, along: float) -> Place | None:
     """Return the place of a state that is stable and near the one before; None where it is not."""
     if not is_near(here.state, new):
         return None
@@ -115,7 +115,7 @@ def _stable(problem: Problem, here: Place, new: State, along: float) -> Place | 
     return None if factors.unstable or not _yields(problem, new, factors) else Place(new, factors, along)
 
 
-def _yields(problem: Problem, state: State, factors: Factors) -> bool:
+def _yields(problem: PairProblem, state: State, factors: Factors) -> bool:
     """Return whether the contact of the least stable mode gives way to a force on its edge, with the whole tangent."""
     if factors.pinned:
         return True
@@ -132,7 +132,7 @@ def is_near(state: State, new: State) -> bool:
     return math.isfinite(new.error) and bool((ratio < _NEAR).all())
 
 
-def _led(problem: Problem, here: Place, drive: Drive, fast: Fast) -> tuple[Place, Fold | None]:
+def _led(problem: PairProblem, here: Place, drive: Drive, fast: Fast) -> tuple[Place, Fold | None]:
     """Return a place further along the path, on which the radius of an asperity leads, or the fold."""
     state, factors, along, _ = here
     number, sign = fast.asperity, 1.0 if fast.upwards else -1.0
@@ -180,21 +180,23 @@ def _led(problem: Problem, here: Place, drive: Drive, fast: Fast) -> tuple[Place
     return here._replace(leads=None), None
 
 
-def _to_fold(problem: Problem, here: Place, end: Place, drive: Drive, fold: Fold) -> tuple[Place, Fold | None] | None:
+def _to_fold(
+    problem: PairProblem, here: Place, end: Place, drive: Drive, fold: Fold
+) -> tuple[Place, Fold | None] | None:
     """Return the fold at ``end`` or, if the path ends before it, the end of the path; None where that is not found."""
     if end.along > 1.0 and (there := _at_end(problem, here, end, drive, fold=True)):
         return there, None
     return (end, fold) if end.along <= 1.0 + _AT_FOLD else None
 
 
-def _at_end(problem: Problem, here: Place, beyond: Place, drive: Drive, *, fold: bool = False) -> Place | None:
+def _at_end(problem: PairProblem, here: Place, beyond: Place, drive: Drive, *, fold: bool = False) -> Place | None:
     """Return the end of the path, between two places, the second of which may be a fold; None where it is not found."""
     part = (1.0 - here.along) / (beyond.along - here.along)
     guess = between(problem, here, beyond, 1.0, drive, 1.0 - math.sqrt(1.0 - part) if fold else part)
     return _stable(problem, here, newton(problem, guess, drive, here.factors)[0], 1.0)
 
 
-def _lead_step(problem: Problem, fast: Fast, t: float, slope: float) -> float:
+def _lead_step(problem: PairProblem, fast: Fast, t: float, slope: float) -> float:
     """Return the first step of the radius that leads, over its state."""
     if fast.slope > slope > 0.0:  # the fold, were the slope a straight line, and a little further
         to_fold = abs(t - fast.t) / t * slope / (fast.slope - slope)
@@ -203,7 +205,7 @@ def _lead_step(problem: Problem, fast: Fast, t: float, slope: float) -> float:
 
 
 def between(
-    problem: Problem, here: Place, there: Place, along: float, drive: Drive, part: float | None = None
+    problem: PairProblem, here: Place, there: Place, along: float, drive: Drive, part: float | None = None
 ) -> State:
     """Return the guess at a place between two others or near them, a ``part`` of the way, else in proportion."""
     state, new, change = here.state, there.state, along - here.along
@@ -214,7 +216,7 @@ def between(
 
 
 def _fold(
-    problem: Problem,
+    problem: PairProblem,
     best: Place,
     root: Bracket,
     drive: Drive,

@@ -21,7 +21,7 @@ from roughmdr.numerics.jit import njit
 Bools = NDArray[np.bool_]
 
 
-class Problem(NamedTuple):
+class PairProblem(NamedTuple):
     """Asperities that adhere and feel each other, in units of the patch."""
 
     kernels: JkrKernels
@@ -36,7 +36,7 @@ class Problem(NamedTuple):
     natural: Floats
     """Stretches of the edge of lone contacts as they are made, by which errors are measured."""
 
-    def part(self, kept: NDArray[np.int64]) -> "Problem":
+    def part(self, kept: NDArray[np.int64]) -> "PairProblem":
         """Return the problem of some of the asperities, alone."""
         few, natural = Asperities(*(each[kept] for each in self.asperities)), self.natural[kept]
         near = self.near.part(kept, few, natural)
@@ -110,7 +110,7 @@ def _compare(inside: Bools, pinned: bool, work: float, contacts: Contacts, natur
     return largest
 
 
-def field_of(problem: Problem, load: Floats, overlap: coincident.Overlap) -> Floats:
+def field_of(problem: PairProblem, load: Floats, overlap: coincident.Overlap) -> Floats:
     """Return the displacement by loads with its derivatives, [row, asperity], but for overlapping pairs."""
     if problem.order == 2:
         field = problem.coupling.field(load)
@@ -121,7 +121,7 @@ def field_of(problem: Problem, load: Floats, overlap: coincident.Overlap) -> Flo
     return field
 
 
-def evaluate(problem: Problem, inside: Bools, t: Floats, load: Floats, separation: float, outer: Floats) -> State:
+def evaluate(problem: PairProblem, inside: Bools, t: Floats, load: Floats, separation: float, outer: Floats) -> State:
     """Return the contacts with their residuals."""
     overlap, coupling = problem.near.at(separation), problem.coupling
     pairs, field = overlap.pairs, field_of(problem, load, overlap)
@@ -149,7 +149,7 @@ def evaluate(problem: Problem, inside: Bools, t: Floats, load: Floats, separatio
     return State(inside, t, load, separation, outer, field, contacts, overlap, found, *totals)
 
 
-def alone(problem: Problem, state: State) -> tuple[Problem, State]:
+def alone(problem: PairProblem, state: State) -> tuple[PairProblem, State]:
     """Return the problem of the asperities in contact, without all others, and their state."""
     kept = np.flatnonzero(state.inside)
     t, load, outer = state.t[kept], state.load[kept], state.outer[:, kept]
@@ -158,14 +158,14 @@ def alone(problem: Problem, state: State) -> tuple[Problem, State]:
     return few, whole._replace(factors=state.factors)
 
 
-def among(problem: Problem, kept: NDArray[np.int64], few: State, outer: Floats) -> State:
+def among(problem: PairProblem, kept: NDArray[np.int64], few: State, outer: Floats) -> State:
     """Return the state of all asperities of a problem, of which ``kept`` are in contact as in ``few``."""
     inside, t, load = np.zeros(outer.shape[1], np.bool_), np.zeros(outer.shape[1]), np.zeros(outer.shape[1])
     inside[kept], t[kept], load[kept] = True, few.t, few.load
     return evaluate(problem, inside, t, load, few.separation, outer)._replace(factors=few.factors)
 
 
-def moved(problem: Problem, state: State, step: Step, drive: Drive) -> State:
+def moved(problem: PairProblem, state: State, step: Step, drive: Drive) -> State:
     """Return the state of contacts moved by a step."""
     t = state.t
     if not problem.kernels.pinned:
@@ -175,7 +175,7 @@ def moved(problem: Problem, state: State, step: Step, drive: Drive) -> State:
     return evaluate(problem, state.inside, t, state.load + step.load, separation, outer)
 
 
-def energy(problem: Problem, state: State) -> float:
+def energy(problem: PairProblem, state: State) -> float:
     """Return the energy of all contacts in equilibrium [E* L^3]."""
     between = state.load * (state.potential - 0.5 * state.by_loads)
     return math.fsum(state.contacts.energy.tolist()) + math.pi * math.fsum(between.tolist())

@@ -7,7 +7,7 @@ import numpy as np
 
 from roughmdr.interaction.jkr.bracket import Bracket
 from roughmdr.interaction.jkr.branch import NoEquilibriumError, Place, between, piece
-from roughmdr.interaction.jkr.equilibrium import Drive, Problem, State, alone, among
+from roughmdr.interaction.jkr.equilibrium import Drive, PairProblem, State, alone, among
 from roughmdr.interaction.jkr.factors import Factors
 from roughmdr.interaction.jkr.newton import newton
 from roughmdr.numerics.arguments import Floats
@@ -25,7 +25,7 @@ class Event(NamedTuple):
     """Whether its radius grows."""
 
 
-def advance(problem: Problem, state: State, drive: Drive) -> tuple[State, Event | None]:
+def advance(problem: PairProblem, state: State, drive: Drive) -> tuple[State, Event | None]:
     """Follow the stable path from a state to its end, or to the first event.
 
     NoEquilibriumError where neither is found.
@@ -47,7 +47,7 @@ def advance(problem: Problem, state: State, drive: Drive) -> tuple[State, Event 
     raise NoEquilibriumError
 
 
-def _opening(problem: Problem, state: State) -> Floats:
+def _opening(problem: PairProblem, state: State) -> Floats:
     """Return by how much each contact is beyond the point at which it is made or lost."""
     beyond = state.gap.copy()
     beyond[state.inside] = -math.inf
@@ -60,7 +60,7 @@ def _opening(problem: Problem, state: State) -> Floats:
 class _Path:
     """Asperities, and the path of those alone that are in contact."""
 
-    def __init__(self, problem: Problem, state: State, drive: Drive) -> None:
+    def __init__(self, problem: PairProblem, state: State, drive: Drive) -> None:
         self.problem, self.kept = problem, np.flatnonzero(state.inside)
         self.outer = state.outer, drive.outer
         self.drive = Drive(drive.separation, drive.outer[:, self.kept])

@@ -14,7 +14,7 @@ from scipy.linalg.lapack import dgetrf, dgetrs, dsytrf
 from roughmdr.interaction.close import Pairs
 from roughmdr.interaction.green import point_load
 from roughmdr.interaction.jkr.contacts import Contacts
-from roughmdr.interaction.jkr.equilibrium import Problem, State, Step
+from roughmdr.interaction.jkr.equilibrium import PairProblem, State, Step
 from roughmdr.numerics.arguments import Floats
 from roughmdr.numerics.jit import njit
 
@@ -86,7 +86,7 @@ def _eliminate(cross: Floats, a: Floats, by_load: Floats, ratio: Floats, matrix:
 class Factors:
     """The factored tangent at a state in which all asperities are in contact."""
 
-    def __init__(self, problem: Problem, state: State) -> None:
+    def __init__(self, problem: PairProblem, state: State) -> None:
         contacts, size = state.contacts, state.t.size
         a = contacts.radius
         self.pinned, self.natural, self.release = problem.kernels.pinned, problem.natural, state.release

@@ -14,7 +14,7 @@ from roughmdr.interaction.green import below_all
 from roughmdr.interaction.interface import Asperities
 from roughmdr.interaction.jkr import coincident, contacts, lone
 from roughmdr.interaction.jkr.branch import NoEquilibriumError
-from roughmdr.interaction.jkr.equilibrium import Drive, Problem, State, evaluate
+from roughmdr.interaction.jkr.equilibrium import Drive, PairProblem, State, evaluate
 from roughmdr.interaction.jkr.events import Event, advance
 from roughmdr.interaction.jkr.interface import JkrKernels
 from roughmdr.interaction.jkr.jumps import Avalanche, avalanche
@@ -36,7 +36,7 @@ _LARGEST_WINDOW, _SMALL_WINDOW = 1.5, 50  # asperities that may be in it over th
 class Piece(NamedTuple):
     """A part of the way of the flat on which no contact is made or lost, with the avalanche at its end."""
 
-    problem: Problem
+    problem: PairProblem
     """The asperities near contact."""
     kept: NDArray[np.int64]
     """Their numbers among all."""
@@ -96,7 +96,7 @@ class Front:
         natural, reach = self.natural[:count], np.empty((2, count))
         kernels.flanks(np.arange(count), self._lowest, natural, few, reach)
         near = coincident.Near(kernels, few, natural, coincident.find(at, reach[0], placed.sides))
-        self.problem = Problem(kernels, few, coupling, near, interaction.order, self.work, natural)
+        self.problem = PairProblem(kernels, few, coupling, near, interaction.order, self.work, natural)
         self.kept = np.arange(0)
         self.window = self.problem.part(self.kept)
 
@@ -191,7 +191,7 @@ def _radius(kernels: JkrKernels, asperities: Asperities, i: int, work: float) ->
     return size * kernels.terms(t, kernels.params_of(asperities.params, i))[0]
 
 
-def none(problem: Problem) -> Floats:
+def none(problem: PairProblem) -> Floats:
     """Return an outer field of none."""
     return np.zeros((5, problem.natural.size))
 

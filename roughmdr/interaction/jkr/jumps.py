@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from roughmdr.interaction.jkr.branch import LEAST_STATE, NoEquilibriumError
-from roughmdr.interaction.jkr.equilibrium import Drive, Problem, State, energy, evaluate, field_of
+from roughmdr.interaction.jkr.equilibrium import Drive, PairProblem, State, energy, evaluate, field_of
 from roughmdr.interaction.jkr.events import Event, advance
 from roughmdr.interaction.jkr.lone import Surface
 from roughmdr.interaction.jkr.newton import at_rest
@@ -23,7 +23,7 @@ class Avalanche(NamedTuple):
     """[E* L^3]."""
 
 
-def jump(problem: Problem, state: State, event: Event) -> State:
+def jump(problem: PairProblem, state: State, event: Event) -> State:
     """Return the state after a jump of one contact, of which all others have felt nothing yet.
 
     What they would feel is put into the outer field. NoEquilibriumError where it widens without end.
@@ -54,7 +54,7 @@ def jump(problem: Problem, state: State, event: Event) -> State:
     return evaluate(problem, inside, t, load, state.separation, outer)
 
 
-def avalanche(problem: Problem, state: State, event: Event) -> tuple[State, Avalanche]:
+def avalanche(problem: PairProblem, state: State, event: Event) -> tuple[State, Avalanche]:
     """Return the state at rest after a jump and all that it sets off, one jump at a time.
 
     The load that a jump sheds is handed to the others little by little; at the next fold another contact jumps.

@@ -7,7 +7,7 @@ import math
 
 import numpy as np
 
-from roughmdr.interaction.jkr.equilibrium import Drive, Problem, State, Step, alone, among, moved
+from roughmdr.interaction.jkr.equilibrium import Drive, PairProblem, State, Step, alone, among, moved
 from roughmdr.interaction.jkr.factors import Factors, Lead
 from roughmdr.interaction.jkr.mixing import Mixing
 from roughmdr.interaction.jkr.tangent import leading
@@ -20,7 +20,7 @@ _ERROR = 1e-13  # of the natural depth
 _AT_REST = 1e3  # times the error: where rounding lets no step go further
 
 
-def tolerance(problem: Problem, state: State) -> float:
+def tolerance(problem: PairProblem, state: State) -> float:
     """Return the residual over the natural depth that rounding leaves."""
     size = np.abs(problem.asperities.height - state.separation) + np.abs(state.potential) + np.abs(state.contacts.depth)
     return float(np.max(_ERROR + _ROUNDING * size / problem.natural, initial=_ERROR))
@@ -28,7 +28,7 @@ def tolerance(problem: Problem, state: State) -> float:
 
 @np.errstate(all="ignore")  # a guess that no float holds leads nowhere
 def newton(
-    problem: Problem,
+    problem: PairProblem,
     state: State,
     drive: Drive,
     factors: Factors | None,
@@ -74,7 +74,7 @@ def newton(
     return state, along
 
 
-def at_rest(problem: Problem, state: State) -> State:
+def at_rest(problem: PairProblem, state: State) -> State:
     """Return asperities with their contacts in equilibrium at the separation of a guess; its error inf if not found."""
     few, guess = alone(problem, state)
     rest, _ = newton(few, guess, Drive(0.0, np.zeros_like(guess.outer)), guess.factors)

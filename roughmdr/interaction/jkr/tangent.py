@@ -9,7 +9,7 @@ import numpy as np
 
 from roughmdr.interaction import close
 from roughmdr.interaction.jkr import coincident
-from roughmdr.interaction.jkr.equilibrium import Drive, Problem, State, Step, field_of
+from roughmdr.interaction.jkr.equilibrium import Drive, PairProblem, State, Step, field_of
 from roughmdr.interaction.jkr.factors import Factors, Lead
 from roughmdr.interaction.jkr.mixing import Mixing
 from roughmdr.numerics.arguments import Floats
@@ -20,7 +20,7 @@ _MAX_STEPS = 50
 class Tangent:
     """The derivatives at a state in which all asperities are in contact."""
 
-    def __init__(self, problem: Problem, state: State, drive: Drive) -> None:
+    def __init__(self, problem: PairProblem, state: State, drive: Drive) -> None:
         self.problem, self.state, self.drive = problem, state, drive
 
     def along(self) -> tuple[Floats, Floats]:
@@ -104,7 +104,7 @@ class Tangent:
         return Step(nothing, nothing, math.nan)
 
 
-def leading(problem: Problem, state: State, drive: Drive, factors: Factors, asperity: int) -> Lead:
+def leading(problem: PairProblem, state: State, drive: Drive, factors: Factors, asperity: int) -> Lead:
     """Return the radius of an asperity as one that is given."""
     edge, gap = Tangent(problem, state, drive).along()
     return Lead(asperity, factors.solve(-edge, -gap), -edge)

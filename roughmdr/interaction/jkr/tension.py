@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 from roughmdr.interaction.jkr.bracket import Bracket
-from roughmdr.interaction.jkr.equilibrium import Drive, Problem, State, alone, evaluate
+from roughmdr.interaction.jkr.equilibrium import Drive, PairProblem, State, alone, evaluate
 from roughmdr.interaction.jkr.factors import Factors
 from roughmdr.interaction.jkr.newton import newton
 from roughmdr.interaction.jkr.tangent import Tangent
@@ -25,7 +25,7 @@ class Tension(NamedTuple):
     radius_squares: float = 0.0
 
 
-def slope(problem: Problem, state: State, factors: Factors | None = None) -> float:
+def slope(problem: PairProblem, state: State, factors: Factors | None = None) -> float:
     """Return dF/dh of contacts."""
     if not state.t.size:
         return 0.0
@@ -39,7 +39,7 @@ def of_state(state: State) -> Tension:
     return Tension(math.fsum(state.load.tolist()), state.separation, int(state.inside.sum()), squares)
 
 
-def largest_between(problem: Problem, state: State, new: State, best: Tension, *, fold: bool) -> Tension:
+def largest_between(problem: PairProblem, state: State, new: State, best: Tension, *, fold: bool) -> Tension:
     """Return the largest tension on the path from a state to another with larger separation, or ``best``.
 
     No contact is made or lost on it. Where the force has its least value within, that is found by its slope.

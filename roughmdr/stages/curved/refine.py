@@ -11,7 +11,7 @@ from roughmdr.ensemble import Source
 from roughmdr.ensemble.nodes import Rule
 from roughmdr.errors import OutOfRange
 from roughmdr.expected.converge import FIRST_ORDER, converge
-from roughmdr.expected.node import Problem, set_up_apart
+from roughmdr.expected.node import MeanProblem, set_up_apart
 from roughmdr.kernels.adhesion import Adhesion
 from roughmdr.numerics.arguments import Floats
 from roughmdr.shapes import Shape
@@ -67,7 +67,7 @@ def solve(layer: Layer, shape: Shape, separation: Floats, error: float) -> Solut
         deepest = closest - margin
         some = np.linspace(max(float(separation.max()), deepest + scale), deepest, _RULE_STEPS)
         path = LoadingPath.along(some, unload=hysteretic, adhesive=adhesive)
-        problem = Problem(source, path, layer.effective_modulus, layer.adhesion, _ROWS_OF_RULE)
+        problem = MeanProblem(source, path, layer.effective_modulus, layer.adhesion, _ROWS_OF_RULE)
         rule = converge(problem, None, dissipating=False)
         law = LocalLaw.of(set_up_apart(problem._replace(rows=ROWS), *rule.rules), density, scale, deepest)
         body, places, change = _on_wide_rings(law, shape, layer.effective_modulus, separation, error)
