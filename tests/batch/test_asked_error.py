@@ -173,7 +173,7 @@ def test_to_prepare_for_the_expected_law_takes_one_asperity_and_nothing_where_it
     """It can take a thousand times as long as the draws."""
     counts, contacts_of = list[int](), node.contacts_of
 
-    def counting(asked: node.Problem, nodes: Nodes) -> list[Contact]:
+    def counting(asked: node.MeanProblem, nodes: Nodes) -> list[Contact]:
         counts.append(nodes.weights.size)
         return contacts_of(asked, nodes)
 
