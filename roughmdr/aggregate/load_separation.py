@@ -15,7 +15,6 @@ from roughmdr.ensemble.ensemble import Ensemble
 from roughmdr.errors import OutOfRange, RoughmdrError, SceneError, warn_limits
 from roughmdr.interaction.settings import Interaction
 from roughmdr.kernels.adhesion import Adhesion
-from roughmdr.loading.path import LoadingPath
 from roughmdr.model_error import fraction_warnings
 from roughmdr.model_error.coupling import coupling_warnings
 from roughmdr.schema.keywords import named_keywords
@@ -125,7 +124,7 @@ def load_separation(
         if name not in CURVE_VARIABLES:
             raise SceneError(f"variables: {name!r} is not available; there are {', '.join(CURVE_VARIABLES)}")
     problem = Problem(asperities, effective_modulus, asked, coupling)
-    result = simulate(problem, path, names if isinstance(path, LoadingPath) else path.variables(names))
+    result = simulate(problem, path, path.variables(names))
     data = {name: Array(("step",), values, LAW_VARIABLES[name].attrs) for name, values in result.variables.items()}
     errors = {"numerical_error": result.numerical_error, **result.model_error.named}
     errors["effective_contacts"] = result.effective_contacts

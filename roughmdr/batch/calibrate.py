@@ -173,12 +173,14 @@ def _thinned(cell: Cell, steps: int) -> Cell:
     not grow with them.
     """
     if steps >= cell.steps:
-        return Cell(cell.scene, cell.path, None, cell.lateral)
+        return Cell(cell.scene, cell.path, cell.usual)
     some = np.linspace(0, cell.steps - 1, steps).astype(int)
     separation = np.sort(cell.path.separation[some])[::-1]
     path = LoadingPath.along(separation, unload=False, adhesive=cell.scene.work > 0.0)
-    lateral = cell.lateral and LateralPath.along(cell.lateral.held, cell.lateral.displacement[some])
-    return Cell(cell.scene, path, None, lateral)
+    usual: Path = path
+    if isinstance(cell.controlled, LateralPath):
+        usual = LateralPath.along(cell.controlled.held, cell.controlled.displacement[some]).over(path)
+    return Cell(cell.scene, path, usual)
 
 
 def _draw_and_sum(scene: Scene, path: Path, count: int, estimator: str, variables: list[str]) -> _Time:

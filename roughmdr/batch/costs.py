@@ -10,7 +10,7 @@ import numpy as np
 
 from roughmdr.batch.plan import Cell, Plan
 from roughmdr.kernels.adhesion import Adhesion
-from roughmdr.loading.machine import legs_of
+from roughmdr.loading.machine import MachinePath, legs_of
 from roughmdr.scene import Scene
 from roughmdr.shapes import SHAPES, TabledShape
 from roughmdr.variables import LOSSES
@@ -77,9 +77,7 @@ def law_seconds(cell: Cell, estimator: str) -> float:
 
 def along_seconds(cell: Cell, estimator: str) -> float:
     """Return about how long the law of one run takes [s] along separations that are given."""
-    adhesion, section, steps = cell.scene.adhesion_model, cell.scene.asperities, cell.steps
-    if cell.lateral is not None:  # whose law is computed once at each amplitude
-        steps = np.unique(cell.lateral.memory.amplitude).size
+    adhesion, section, steps = cell.scene.adhesion_model, cell.scene.asperities, cell.controlled.solutions
     if cell.scene.interaction is not None and not cell.scene.needs_positions:
         steps *= _MEAN_FIELD_PASSES
     steps += sum(stage.more_separations for stage in cell.scene.stages)
@@ -98,7 +96,7 @@ def along_seconds(cell: Cell, estimator: str) -> float:
 
 def _search_factor(cell: Cell, estimator: str) -> float:
     """Return how many times as long a run takes whose separations a load, a spring or a preload leads to."""
-    if cell.scene.path.control == "separation" or cell.lateral is not None or estimator == "expected":
+    if not isinstance(cell.controlled, MachinePath) or estimator == "expected":
         return 1.0
     if not cell.scene.needs_positions:
         return _SOUGHT
@@ -108,16 +106,16 @@ def _search_factor(cell: Cell, estimator: str) -> float:
 def locates_jumps(cell: Cell, estimator: str) -> bool:
     """Return whether jumps of the flat are located, since the energy that they lose is asked for."""
     alone = estimator != "expected" and not cell.scene.needs_positions and cell.scene.work > 0.0
-    return alone and not cell.fixed_grips and not LOSSES.isdisjoint(cell.scene.output.variables)
+    return alone and not cell.controlled.rigid and not LOSSES.isdisjoint(cell.scene.output.variables)
 
 
 def _jump_seconds(cell: Cell) -> float:
     """Return about how long it takes to locate the jumps by which all contacts are made, and lost [s]."""
-    assert cell.machine is not None
+    assert isinstance(cell.controlled, MachinePath)  # as ``locates_jumps`` makes sure
     scene, contacts = cell.scene, touching(cell)
     visit = _visit_seconds(scene.adhesion_model, scene.asperities.shape_name)
     visits = _JUMP_VISITS if scene.asperities.shape_name == "paraboloid" else _JUMP_VISITS_PROFILE
-    return len(legs_of(cell.machine.demand)) * contacts * (_JUMP + visits * contacts * visit)
+    return len(legs_of(cell.controlled.demand)) * contacts * (_JUMP + visits * contacts * visit)
 
 
 def touching(cell: Cell) -> float:

@@ -14,6 +14,7 @@ from roughmdr.interaction import Interaction
 from roughmdr.interaction.placed import part_of
 from roughmdr.interaction.settings import reason_against_adhesion
 from roughmdr.scene import Scene
+from roughmdr.variables import LATERAL
 
 _MAX_ASPERITIES = 1000
 _MAX_STEPS = 60
@@ -68,7 +69,7 @@ def foresee_cells(plan: Plan) -> Prospect:
     coupled = max(
         math.inf
         if cell.scene.unlike
-        or cell.lateral is not None
+        or plan.control == LATERAL.name
         or reason_against_adhesion(Interaction(), cell.scene.adhesion_model)
         else paired_seconds(cell)
         for cell in plan.cells

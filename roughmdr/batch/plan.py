@@ -13,7 +13,7 @@ from roughmdr.batch.usual_path import machine_path, usual_path
 from roughmdr.errors import SceneError
 from roughmdr.interaction.placed import check_placed
 from roughmdr.loading.lateral import LateralPath, Path
-from roughmdr.loading.machine import FIXED_GRIPS, MachinePath, attributes_of
+from roughmdr.loading.machine import MachinePath, attributes_of
 from roughmdr.numerics.arguments import Floats
 from roughmdr.scene import Scene
 from roughmdr.scene.lateral import displacements
@@ -21,7 +21,7 @@ from roughmdr.scene.sweep import describe_cell
 from roughmdr.schema.wording import count_by_cell
 from roughmdr.stages import STAGES
 from roughmdr.storage.labelled import Array
-from roughmdr.variables import COORDINATES, LATERAL, OUTPUT_VARIABLES
+from roughmdr.variables import COORDINATES, OUTPUT_VARIABLES
 
 
 class Cell(NamedTuple):
@@ -29,35 +29,19 @@ class Cell(NamedTuple):
 
     scene: Scene
     path: LoadingPath
-    """Under a machine that of usual asperities, by which costs and contacts are foreseen."""
-    machine: MachinePath | None = None
-    """The path of the machine; None where the flat itself is moved."""
-    lateral: LateralPath | None = None
-    """How the flat is moved sideways, along a path that stays where it is; None where it is not."""
-
-    @property
-    def controlled(self) -> Path:
-        """The path that is controlled."""
-        return self.lateral or (self.path if self.machine is None else self.machine)
+    """The path of the flat; under a machine that over usual asperities, by which costs and contacts are foreseen."""
+    controlled: Path
+    """The path that is controlled."""
 
     @property
     def usual(self) -> Path:
         """The path of the flat itself: over usual asperities, where their force decides on its separation."""
-        if self.lateral is None:
-            return self.path
-        return self.lateral._replace(held=LoadingPath.along(self.path.separation[:1], unload=False, adhesive=False))
-
-    @property
-    def fixed_grips(self) -> bool:
-        """Whether nothing gives way between the flat and what moves it."""
-        return self.machine is None or self.machine.machine == FIXED_GRIPS
+        return self.controlled.over(self.path)
 
     @property
     def values(self) -> Floats:
         """The controlled quantity at each step, in SI."""
-        if self.lateral is not None:
-            return self.lateral.displacement
-        return self.path.separation if self.machine is None else self.machine.values
+        return self.controlled.values
 
     @property
     def steps(self) -> int:
@@ -85,10 +69,8 @@ class Plan(NamedTuple):
 
     @property
     def watched(self) -> str:
-        """The variable that [accuracy] is about: under a dead load, which is the force itself, the separation."""
-        if self.control == LATERAL.name:
-            return "tangential_force"
-        return "separation" if self.control in ("force", "pressure") else "force"
+        """The variable that [accuracy] is about."""
+        return self.cells[0].controlled.watched
 
     @property
     def keeps_statistics(self) -> bool:
@@ -98,25 +80,19 @@ class Plan(NamedTuple):
     @property
     def unloads(self) -> bool:
         """Whether the flat rises anywhere on its path, which is so in all cells or in none."""
-        first = self.cells[0]
-        way = first.path.separation if first.machine is None else first.machine.demand
-        return bool((np.diff(way) > 0.0).any())
+        return self.cells[0].controlled.unloads
 
     @property
     def control(self) -> str:
         """The quantity that the path controls."""
-        path = self.scene.cells[0].path
-        return path.control if path.lateral is None else LATERAL.name
+        return self.cells[0].controlled.control
 
     @property
     def variables(self) -> list[str]:
         """The variables of the result over its steps."""
-        asked, machine = self.scene.output.variables, self.cells[0].machine
-        if self.control == LATERAL.name:
-            return LateralPath.variables(asked)
-        if machine is not None:
-            return machine.variables(asked)
-        return [*asked, *(name for stage in self.scene.stages for name in stage.more_variables(asked))]
+        asked = self.scene.output.variables
+        added = (name for stage in self.scene.stages for name in stage.more_variables(asked))
+        return [*self.cells[0].controlled.variables(asked), *added]
 
     @property
     def warnings(self) -> list[str]:
@@ -212,7 +188,7 @@ def _planned(cell: Scene, values: Floats, paths: dict[tuple[object, ...], Loadin
         key = values.tobytes(), cell.work > 0.0
         if key not in paths:
             paths[key] = LoadingPath.along(values, unload=False, adhesive=cell.work > 0.0)
-        return Cell(cell, paths[key])
+        return Cell(cell, paths[key], paths[key])
     machine = machine_path(cell, values)
     return Cell(cell, usual_path(cell, machine), machine)
 
@@ -221,13 +197,13 @@ def _moved_sideways(cell: Scene, held: Floats) -> Cell:
     """Return a cell whose flat is moved sideways while a separation or a load, in SI, is held."""
     assert cell.path.lateral is not None
     displacement = cell.path.whole(displacements(cell.path.lateral))
-    if cell.path.control == "separation":
-        machine, usual = None, LoadingPath.along(held, unload=False, adhesive=False)
-    else:
-        machine = machine_path(cell, held)
-        usual = usual_path(cell, machine)
+    usual = LoadingPath.along(held, unload=False, adhesive=False)
+    holding: LoadingPath | MachinePath = usual
+    if cell.path.control != "separation":
+        holding = machine_path(cell, held)
+        usual = usual_path(cell, holding)
     stays = LoadingPath.along(np.full(displacement.size, usual.separation[0]), unload=False, adhesive=False)
-    return Cell(cell, stays, machine, LateralPath.along(usual if machine is None else machine, displacement))
+    return Cell(cell, stays, LateralPath.along(holding, displacement))
 
 
 def _check_asperities_read(cell: Scene) -> None:

@@ -14,6 +14,7 @@ from roughmdr.batch.plan import Cell
 from roughmdr.batch.realization import simulate_ensemble
 from roughmdr.ensemble import Ensemble
 from roughmdr.errors import RoughmdrError
+from roughmdr.loading.machine import MachinePath
 from roughmdr.numerics.arguments import Floats
 
 _SCORES = np.arange(-8.0, 9.0)  # draws reach 8.2
@@ -55,15 +56,16 @@ def _per_force(cell: Cell) -> float | Floats:
 
     Behind a spring of stiffness k_m the force itself changes by 1/(1 + k/k_m).
     """
-    if cell.machine is None or cell.lateral is not None:
+    if not isinstance(cell.controlled, MachinePath):
         return 1.0
     source = cell.scene.asperities
     stratified = source.is_random and not source.reason_against("stratified")
     ensemble = source.ensemble(cell.scene.seed, 0, stratified=stratified)
     independent = cell.scene.model_copy(update={"interaction": None})
     stiffness = simulate_ensemble(independent, cell.path, ensemble, ["stiffness"]).variables["stiffness"]
-    total = np.abs(cell.machine.machine.slope(stiffness))
-    per_force = cell.machine.machine.compliance if cell.machine.machine.is_dead_load else 1.0
+    machine = cell.controlled.machine
+    total = np.abs(machine.slope(stiffness))
+    per_force = machine.compliance if machine.is_dead_load else 1.0
     return np.where(total > 0.0, per_force / np.where(total > 0.0, total, 1.0), 0.0)
 
 
@@ -93,8 +95,8 @@ def _force(cell: Cell, ensemble: Ensemble, number: int) -> Floats:
     one = slice(number, number + 1)
     parameters = {name: column[one] for name, column in ensemble.parameters.items()}
     alone = replace(ensemble, height=ensemble.height[one], parameters=parameters)
-    name = "force" if cell.lateral is None else "tangential_force"
+    path = cell.usual
     try:
-        return simulate_ensemble(cell.scene, cell.usual, alone, [name]).variables[name]
+        return simulate_ensemble(cell.scene, path, alone, [path.watched]).variables[path.watched]
     except RoughmdrError:
         return np.zeros(cell.steps)

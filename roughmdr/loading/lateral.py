@@ -29,8 +29,41 @@ class LateralPath(NamedTuple):
     @property
     def held_value(self) -> float:
         """The separation, force or pressure that is held, in SI."""
-        values = self.held.separation if isinstance(self.held, LoadingPath) else self.held.values
-        return float(values[-1])
+        return float(self.held.values[-1])
+
+    @property
+    def control(self) -> str:
+        """The quantity that is controlled."""
+        return LATERAL.name
+
+    @property
+    def values(self) -> Floats:
+        """The displacement at each step [m]."""
+        return self.displacement
+
+    @property
+    def watched(self) -> str:
+        """The variable that an error asked for is about."""
+        return "tangential_force"
+
+    @property
+    def rigid(self) -> bool:
+        """Whether nothing gives way between the flat and what holds it."""
+        return self.held.rigid
+
+    @property
+    def unloads(self) -> bool:
+        """Whether the flat rises anywhere, which it does not."""
+        return False
+
+    @property
+    def solutions(self) -> int:
+        """The number of amplitudes, at each of which the normal contacts are solved once."""
+        return int(np.unique(self.memory.amplitude).size)
+
+    def over(self, usual: LoadingPath) -> "LateralPath":
+        """Return the path of the flat itself: held where ``usual`` asperities have it."""
+        return self._replace(held=LoadingPath.along(usual.separation[:1], unload=False, adhesive=False))
 
     @staticmethod
     def variables(names: list[str]) -> list[str]:

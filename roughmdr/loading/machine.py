@@ -15,7 +15,7 @@ from typing import NamedTuple, TypeVar
 import numpy as np
 
 from roughmdr.errors import OutOfRange
-from roughmdr.loading.path import labelled_branches
+from roughmdr.loading.path import LoadingPath, labelled_branches, rises_anywhere
 from roughmdr.numerics.arguments import Floats
 from roughmdr.storage.labelled import Array
 from roughmdr.variables import COORDINATES, CURVE_VARIABLES, REMOTE, SEPARATION, TRAVEL
@@ -111,6 +111,30 @@ class MachinePath(NamedTuple):
         """Return the path to a preload with these travels, through a spring [N/m] or, where that is None, none."""
         machine = FIXED_GRIPS if machine_stiffness is None else spring(machine_stiffness)
         return cls(TRAVEL.name, travel, -travel, machine, adhesive, preload)
+
+    @property
+    def watched(self) -> str:
+        """The variable that an error asked for is about; under a dead load, which is the force, the separation."""
+        return SEPARATION.name if self.machine.is_dead_load else "force"
+
+    @property
+    def rigid(self) -> bool:
+        """Whether nothing gives way between the flat and what moves it."""
+        return self.machine == FIXED_GRIPS
+
+    @property
+    def unloads(self) -> bool:
+        """Whether the machine withdraws anywhere."""
+        return rises_anywhere(self.demand)
+
+    @property
+    def solutions(self) -> int:
+        """The number of steps, at each of which contacts are solved once its separation is found."""
+        return int(self.values.size)
+
+    def over(self, usual: LoadingPath) -> LoadingPath:
+        """Return the path of the flat itself, given that over ``usual`` asperities."""
+        return usual
 
     def between(self, clear: float, turn: float) -> "MachinePath":
         """Return the path whose travel goes from ``clear`` [m] to ``turn`` [m], which it meets to the last bit."""

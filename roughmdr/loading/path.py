@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from roughmdr.loading.staircase import Staircase, no_memory, staircase
 from roughmdr.numerics.arguments import Floats
 from roughmdr.storage.labelled import Array
-from roughmdr.variables import COORDINATES
+from roughmdr.variables import COORDINATES, SEPARATION
 
 
 class LoadingPath(NamedTuple):
@@ -23,6 +23,44 @@ class LoadingPath(NamedTuple):
         # A new array in either case: of one that is strided or read-only numba would compile all loops again.
         separation = np.concatenate([approach, approach[::-1]] if unload else [approach])
         return cls(separation, staircase(separation) if adhesive else no_memory(separation))
+
+    @property
+    def control(self) -> str:
+        """The quantity that is controlled."""
+        return SEPARATION.name
+
+    @property
+    def values(self) -> Floats:
+        """That quantity at each step, in SI."""
+        return self.separation
+
+    @property
+    def watched(self) -> str:
+        """The variable that an error asked for is about."""
+        return "force"
+
+    @property
+    def rigid(self) -> bool:
+        """Whether nothing gives way between the flat and what moves it."""
+        return True
+
+    @property
+    def unloads(self) -> bool:
+        """Whether the flat rises anywhere."""
+        return rises_anywhere(self.separation)
+
+    @property
+    def solutions(self) -> int:
+        """The number of separations at which contacts are solved."""
+        return int(self.separation.size)
+
+    def variables(self, names: list[str]) -> list[str]:
+        """Return the variables of a law that is asked for ``names``."""
+        return names
+
+    def over(self, usual: "LoadingPath") -> "LoadingPath":
+        """Return the path of the flat itself, given that over ``usual`` asperities."""
+        return self
 
     def relative_to(self, origin: float) -> "LoadingPath":
         """Return the path with separations and memory as differences to ``origin`` [m]."""
@@ -57,6 +95,11 @@ def branches(separation: Floats) -> NDArray[np.str_]:
     next_other = np.append(separation[changes], np.inf)[following]
     rises = (separation > before) | ((separation == before) & (next_other > separation))
     return np.where(rises, "unloading", "loading")
+
+
+def rises_anywhere(values: Floats) -> bool:
+    """Return whether values grow from any step to the next."""
+    return bool((np.diff(values) > 0.0).any())
 
 
 def labelled_branches(separation: Floats) -> Array:

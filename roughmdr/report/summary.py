@@ -92,7 +92,7 @@ def _motion(coordinates: Mapping[str, Array]) -> Iterator[tuple[str, str]]:
 
 def _lateral(plan: "Plan") -> Iterator[tuple[str, str]]:
     """Yield the range of the lateral displacements."""
-    if any(cell.lateral is not None for cell in plan.cells):
+    if plan.control == LATERAL.name:
         ends = [(float(cell.values.min()), float(cell.values.max())) for cell in plan.cells]
         lowest, highest = min(low for low, _ in ends), max(high for _, high in ends)
         yield "lateral", f"displacement from {format_quantity(lowest, 'm', to=highest)}, what is normal held"

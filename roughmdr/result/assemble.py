@@ -107,7 +107,7 @@ def _curves(
     contacts may be at the point of detachment, since its variance is infinite.
     """
     # Behind a machine the stiffness of contacts is bounded below, by minus that of the machine.
-    at_detachment = np.array([cell.path.at_detachment() & cell.fixed_grips for cell in plan.cells])
+    at_detachment = np.array([cell.path.at_detachment() & cell.controlled.rigid for cell in plan.cells])
     data: dict[str, Array] = {}
     for name in plan.variables:
         variable, number = LAW_VARIABLES[name], list(variables).index(name)

@@ -33,8 +33,6 @@ def nodes_document(
     others = ["interaction"] * (scene.interaction is not None) + [each.key for each in scene.stages if each.unlike]
     if others:
         raise StoreError(f"quantity 'nodes' is of independent elastic asperities under a flat; scene has [{others[0]}]")
-    if scene.path.lateral is not None:
-        raise StoreError("quantity 'nodes' is along a path of separations, and the scene has path.lateral")
     found = few_asperities(
         scene.asperities,
         planned.path,
