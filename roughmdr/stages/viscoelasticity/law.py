@@ -22,7 +22,6 @@ from roughmdr.stages.viscoelasticity.relaxation import Relaxation
 
 ElasticLaw = Callable[[Floats, list[str]], LoadSeparation]
 """Returns the elastic law at separations [m], in any order, in these variables."""
-_OF_FORCE = ("force", "pressure")
 
 
 class Viscoelasticity(NamedTuple):
