@@ -7,7 +7,7 @@ import xarray as xr
 from studies.study import named
 
 import roughmdr as rm
-from benchmarks.scaling import MODULUS, RADIUS, SHAPES, TOTALS, WORK, by_the_sum, each, ensemble_of
+from benchmarks.sums import MODULUS, RADIUS, SHAPES, TOTALS, WORK, by_the_sum, each, ensemble_of
 from roughmdr.kernels.adhesion import Adhesion
 
 SLOPE = {"distribution": "uniform", "loc": 0.08, "scale": 0.04}

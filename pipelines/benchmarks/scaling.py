@@ -7,7 +7,6 @@ import math
 import time
 from collections.abc import Callable
 from functools import partial
-from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -18,97 +17,38 @@ from studies.study import named
 
 import roughmdr as rm
 from benchmarks.batch import by_cell, tables
-from benchmarks.child import HEIGHT, load_separation
+from benchmarks.child import load_separation
+from benchmarks.laws import by_law
 from benchmarks.process import in_new_process
+from benchmarks.sums import (
+    MODULUS,
+    SHAPES,
+    TOTALS,
+    WORK,
+    by_the_sum,
+    cost_of,
+    each,
+    ensemble_of,
+    loading,
+    section,
+    split_cost,
+)
 from benchmarks.tasks import by_workers
-from roughmdr.aggregate import loop, totals
 from roughmdr.ensemble import Ensemble
 from roughmdr.kernels.adhesion import Adhesion
-from roughmdr.kernels.choose import choose
-from roughmdr.loading.staircase import no_memory, staircase
-from roughmdr.numerics.arguments import Floats
 from roughmdr.numerics.jit import compiled
 from roughmdr.shapes import SHAPES as SHAPE_OF
 from roughmdr.shapes import PowerLaw, ProfileShape, Shape
 from roughmdr.shapes.kappa import kappa
 
-MODULUS, WORK = 4e6, 0.05
 ASPERITIES = {False: 1_000_000, True: 20_000}
 TABOR = (0.1, 1.0, 10.0, 100.0)
-TOTALS = {totals.FORCE, totals.AREA, totals.COUNT, totals.STIFFNESS, totals.ERROR}
-STATE = {totals.FORCE, totals.RADIUS, totals.STIFFNESS}
-_R = np.linspace(0.0, 1e-5, 100)
-SHAPES: dict[str, dict[str, Any]] = {
-    "power_law": {"exponent": {"distribution": "uniform", "loc": 1.2, "scale": 3.0}, "width": "10 um", "rise": "1 um"},
-    "sphere": {"radius": "50 um"},
-    "truncated_cone": {"slope": 0.1, "flat_radius": "2 um"},
-    "truncated_paraboloid": {"radius": "50 um", "flat_radius": "2 um"},
-    "rounded_cone": {"slope": 0.1, "blend_radius": "5 um"},
-    "capped_paraboloid": {"radius": "50 um", "cap_radius": "90 um", "blend_radius": "5 um"},
-    "rounded_punch": {"flat_radius": "2 um", "edge_radius": "50 um"},
-    "tabulated": {"r": _R.tolist(), "f": (1e-4 * _R + _R**2 / 1e-4).tolist()},
-}
-RADIUS = {"distribution": "lognormal", "mean": "50 um", "std": "5 um"}
 _BRENTQ = 300, 200  # asperities, or contacts of one, that a root finder is given
 _BARS = {
     "state_time": "one more step",
     "path_time": "200 steps each way, set-up included",
     "state_time_brentq": "scipy brentq",
 }
-
-
-def section(count: int, shape: str = "paraboloid", **parameters: Any) -> dict[str, Any]:
-    """Return the asperities of a scene."""
-    given = {"source": "random", "shape": shape, "count": count, "patch": "1 m", "height": HEIGHT}
-    return {**given, **(parameters or {"radius": RADIUS})}
-
-
-def ensemble_of(*args: Any, **parameters: Any) -> Ensemble:
-    """Return the asperities of a ``section``."""
-    return Ensemble.from_dataset(rm.generate(section(*args, **parameters), seed=1))
-
-
-def loading(steps: int = 200) -> Floats:
-    """Return separations [m]."""
-    return np.linspace(4e-6, -0.5e-6, steps)
-
-
-def cost_of(action: Callable[[], int], repeats: int = 1) -> tuple[float, int]:
-    """Return the shortest wall time [s] of an action, and its visits, which it returns."""
-    times, visits = [], 1
-    for _ in range(repeats):
-        started = time.perf_counter()
-        visits = action()
-        times.append(time.perf_counter() - started)
-    return min(times), visits
-
-
-def each(cost: tuple[float, int]) -> float:
-    """Return the time of a visit [ns]."""
-    return 1e9 * cost[0] / cost[1]
-
-
-def by_the_sum(ensemble: Ensemble, adhesion: Adhesion, repeats: int, rows: set[int], steps: int) -> tuple[float, int]:
-    """Return time [s] and visits of the package's sum there and back, all included."""
-    columns, path = ensemble.columns, np.concatenate([loading(steps), loading(steps)[::-1]])
-    kernels = choose(ensemble.shape, adhesion, columns[2])
-    memory = staircase(path) if adhesion.work else no_memory(path)
-
-    def visits() -> int:
-        return loop.sum_over_asperities(kernels, ensemble.height, columns, MODULUS, adhesion, path, memory, rows)[2]
-
-    visits()
-    return cost_of(visits, repeats)
-
-
-def split_cost(ensemble: Ensemble, adhesion: Adhesion, repeats: int) -> tuple[float, float, tuple[float, int]]:
-    """Return the times [ns] of delta -> (P, a, k) and of preparing an asperity, and the cost of 200 steps each way.
-
-    The first two are told apart by paths of few steps and of many.
-    """
-    short, long = (by_the_sum(ensemble, adhesion, repeats, STATE, steps) for steps in (200, 2000))
-    state = (long[0] - short[0]) / (long[1] - short[1])
-    return 1e9 * state, 1e9 * (short[0] - state * short[1]) / ensemble.height.size, short
 
 
 def scalar_g(shape: Shape) -> Callable[[float], float]:
@@ -205,8 +145,6 @@ def by_shape(count: int, repeats: int) -> xr.Dataset:
 
 def measure(quick: bool) -> xr.Dataset:
     """Return all figures; ``quick`` of small ensembles."""
-    from benchmarks.laws import by_law  # which takes its ensembles from here
-
     count, repeats = ASPERITIES[quick], 1 if quick else 3
     parts = [by_method(count, repeats), by_shape(count // 50, repeats), by_range(count // 10, repeats)]
     parts.append(by_law(count // 50 if quick else count // 10, repeats))
