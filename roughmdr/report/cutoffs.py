@@ -1,6 +1,7 @@
 """How the summits of a map, and the pressure on them, depend on the cutoff: roughmdr generate --cutoffs."""
 
 import math
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -10,6 +11,8 @@ from roughmdr.aggregate.compute import compute
 from roughmdr.ensemble import SurfaceAsperities
 from roughmdr.ensemble.ensemble import Ensemble
 from roughmdr.errors import RoughmdrError, SceneError
+from roughmdr.loading.first_reached import first_reached
+from roughmdr.numerics.arguments import Floats
 from roughmdr.scene import Scene
 from roughmdr.schema.units import format_quantity, quantity
 
@@ -33,7 +36,7 @@ _NOTES = (
     "give one only against noise that was measured. Pressures are those at which contacts of independent asperities",
     "add up to 1, 2 and 5 % of the nominal area on loading; mean radius is 1/<1/R>.",
 )
-_RTOL = 1e-10  # of the separation, over the spread of the heights
+_RTOL = 1e-10  # of the separation, over its distance from where nothing touches
 
 
 def tabulate_cutoffs(scene: Scene, lengths: str) -> str:
@@ -90,22 +93,12 @@ def pressure_at(scene: Scene, summits: Ensemble, fraction: float) -> float:
 
     With adhesion, of the flat on its way in, where contacts may form by jumps: then the first pressure beyond.
     """
-    from scipy.optimize import brentq
-
-    highest = float(summits.height.max())
-    spread = float(np.ptp(summits.height)) or float(summits.parameters["radius"].min())
-
     problem = Problem(summits, scene.effective_modulus, scene.adhesion_model)
 
-    def law(depth: float) -> dict[str, Any]:
-        path = LoadingPath.along(np.array([highest - spread * depth]), unload=False, adhesive=scene.work > 0.0)
-        return compute(problem, path, ["contact_fraction", "pressure"]).variables
+    def law(name: str, separation: Floats) -> Floats:
+        path = LoadingPath.along(np.append(problem.clear, separation), unload=False, adhesive=scene.work > 0.0)
+        return compute(problem, path, [name]).variables[name][1:]
 
-    def excess(depth: float) -> float:
-        return float(law(depth)["contact_fraction"][0]) - fraction
-
-    deep = 1e-6
-    while excess(deep) < 0.0:
-        deep *= 2.0
-    depth = brentq(excess, 0.0, deep, xtol=_RTOL) if excess(0.0) < 0.0 else 0.0
-    return float(law(depth)["pressure"][0])
+    contact_fraction = partial(law, "contact_fraction")
+    reached = first_reached(contact_fraction, fraction, problem.clear, problem.depth, _RTOL, "contact fraction")
+    return float(law("pressure", np.array([reached]))[0])
