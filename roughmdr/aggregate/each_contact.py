@@ -13,6 +13,7 @@ from roughmdr.errors import OutOfRange
 from roughmdr.kernels.adhesion import Adhesion
 from roughmdr.kernels.interface import Columns
 from roughmdr.loading.path import LoadingPath
+from roughmdr.loading.pull_off import turning_points
 from roughmdr.numerics.arguments import Floats
 
 if TYPE_CHECKING:
@@ -44,19 +45,11 @@ def contacts_at(problem: Problem, separation: Floats, step: int) -> EachContact:
     problem.check_asked([])
     if problem.paired:
         return EachContact(*_coupled(problem, separation, step), problem.adhesion)
-    path = _turning_points(separation[: step + 1])
+    path = turning_points(separation[: step + 1])
     if coupling := coupling_in(problem):  # no memory: it goes without adhesion
         law = compute(problem, LoadingPath.along(path[-1:], unload=False, adhesive=False), ["force"])
         path = path[-1:] + coupling * law.variables["force"]
     return EachContact(*_independent(problem, path), problem.adhesion)
-
-
-def _turning_points(separation: Floats) -> Floats:
-    """Return the first separation of a path, those where it turns back, and the last: all that contacts remember."""
-    moved = separation[np.append(True, np.diff(separation) != 0.0)]
-    rises = np.diff(moved) > 0.0
-    kept = np.concatenate([[True], rises[1:] != rises[:-1], np.full(min(rises.size, 1), True)])
-    return np.asarray(moved[kept])
 
 
 def _independent(problem: Problem, separation: Floats) -> tuple[Floats, Floats]:

@@ -69,13 +69,16 @@ def unloadings(separation: Floats, force: Floats) -> list[Unloading]:
     rises = np.concatenate([[False], np.diff(separation) > 0.0, [False]]).astype(int)
     first, last = (np.flatnonzero(np.diff(rises) == sign) for sign in (1, -1))
     return [
-        Unloading(_turns(separation[: begin + 1]), separation[begin : end + 1], force[begin : end + 1], end)
+        Unloading(turning_points(separation[: begin + 1]), separation[begin : end + 1], force[begin : end + 1], end)
         for begin, end in zip(first.tolist(), last.tolist(), strict=True)
     ]
 
 
-def _turns(separation: Floats) -> Floats:
-    """Return the lowest and highest points of a path in turn; it comes from infinity and ends in one of them."""
+def turning_points(separation: Floats) -> Floats:
+    """Return the lowest and highest points of a path in turn, all that contacts remember of it.
+
+    It comes from infinity and ends in one of them.
+    """
     distinct = separation[np.append(True, np.diff(separation) != 0.0)]
     down = np.append(True, np.diff(distinct) < 0.0)
     return np.asarray(distinct[np.append(down[1:] != down[:-1], True)])
