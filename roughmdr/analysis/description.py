@@ -70,7 +70,7 @@ def _range(array: "xr.DataArray") -> str:
     if "step" in array.dims and values[0] == values[: array.sizes["step"]].max():
         low, high = high, low
     number = "" if "step" in array.dims or values.size == 1 else f" ({values.size} values)"
-    return format_quantity(low, unit, to=high if high != low else None) + number
+    return format_quantity(low, unit, to=high) + number
 
 
 def _runs(result: ResultView) -> str:

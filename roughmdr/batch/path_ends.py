@@ -39,7 +39,8 @@ class PathFinder:
         names = {"clear": f"start {CLEAR!r}", "reached": "stop where the target is reached"}
         found = {name: [getattr(ends, name) for ends in self._found.values()] for name in names}
         known = {name: [value for value in values if value is not None] for name, values in found.items()}
-        return [f"{names[name]}: {_range(values)}" for name, values in known.items() if values]
+        lines = {name: (min(values), max(values)) for name, values in known.items() if values}
+        return [f"{names[name]}: {format_quantity(low, 'm', to=high)}" for name, (low, high) in lines.items()]
 
 
 def _find(cell: Scene, start: float | None, stop: float | None) -> PathEnds:
@@ -57,8 +58,3 @@ def _find(cell: Scene, start: float | None, stop: float | None) -> PathEnds:
         return PathEnds(clear)
     assert cell.path.target is not None
     return PathEnds(clear, target_stop(cell, cell.path.target, begin))
-
-
-def _range(values: list[float]) -> str:
-    lowest, highest = min(values), max(values)
-    return format_quantity(lowest, "m") if lowest == highest else format_quantity(lowest, "m", to=highest)

@@ -24,8 +24,7 @@ def prospect_lines(prospect: "Prospect") -> Iterator[tuple[str, str]]:
 
     def over_cells(unit: str, value: "Callable[[Foreseen], float]") -> str:
         values = [value(cell) for cell in cells]
-        low, high = min(values), max(values)
-        return format_quantity(low, unit) if low == high else format_quantity(low, unit, to=high)
+        return format_quantity(min(values), unit, to=max(values))
 
     start = over_cells("m", lambda cell: float(cell.path.separation[0]))
     closest = over_cells("m", lambda cell: float(cell.path.separation.min()))

@@ -1,6 +1,6 @@
 """Summaries of plans, results and ensembles, for the command line."""
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -16,7 +16,7 @@ from roughmdr.report.pull_off import describe_pull_off
 from roughmdr.result.trust import trust_of_result
 from roughmdr.result.view import ResultView
 from roughmdr.schema.units import format_quantity
-from roughmdr.schema.wording import format_bytes, format_seconds, format_table, printable
+from roughmdr.schema.wording import format_bytes, format_seconds, format_table, printable, under
 from roughmdr.stages import STAGES
 from roughmdr.storage.labelled import Array, Labelled
 from roughmdr.variables import DONE, FAILED, LATERAL, TIME
@@ -35,11 +35,11 @@ def describe_plan(plan: "Plan", estimate: "Estimate", prospect: "Prospect", work
     steps, output = plan.cells[0].path.separation.size, plan.scene.output
     unlikely = implausible_lines(plan, prospect)
     lines = [
-        *_indent("implausible", unlikely),
+        *under("implausible", unlikely),
         ("scene", printable(plan.scene.title)),
         ("runs", f"{_sizes(plan.sizes, estimate.runs // len(plan.cells), steps)}: {estimate.runs} in total"),
         *_required_accuracy(plan),
-        *_indent("lattice", plan.lattice_lines),
+        *under("lattice", plan.lattice_lines),
         ("output", f"{', '.join(plan.variables)}; {output.keep}; {format_bytes(estimate.file)}"),
         ("tasks", f"{estimate.tasks} on {workers} worker{'s' * (workers > 1)}"),
         ("time", f"about {format_seconds(estimate.seconds)}, of which {format_seconds(estimate.start_up)} to start"),
@@ -47,15 +47,15 @@ def describe_plan(plan: "Plan", estimate: "Estimate", prospect: "Prospect", work
         *_lateral(plan),
         *prospect_lines(prospect),
         *foreseen_sample(plan, prospect),
-        *(line for noted, lines in plan.stage_notes.items() for line in _indent(noted, lines)),
+        *(line for noted, lines in plan.stage_notes.items() for line in under(noted, lines)),
         *advice_lines(plan.scene.toml, foreseen_resolution(prospect)),
         *_beside(plan, estimate),
         *_motion(plan.coordinates()),
     ]
     failures = dict.fromkeys([*estimate.failures, *prospect.failures])
     map_lines = [text for text in plan.map_lines if text not in unlikely]
-    lines += [*_indent("map", map_lines), *_indent("warning", plan.warnings), *_indent("cannot run", failures)]
-    return format_table([*lines, *_indent("left out", plan.left_out)])
+    lines += [*under("map", map_lines), *under("warning", plan.warnings), *under("cannot run", failures)]
+    return format_table([*lines, *under("left out", plan.left_out)])
 
 
 def _memory(estimate: "Estimate") -> str:
@@ -79,15 +79,17 @@ def _beside(plan: "Plan", estimate: "Estimate") -> Iterator[tuple[str, str]]:
     """Yield what stages add to each run, and how long it may take."""
     longest, finest = format_seconds(estimate.longest), format_bytes(estimate.finest)
     for stage in plan.scene.stages:
-        yield from _indent(stage.key, stage.plan_lines(longest, finest))
+        yield from under(stage.key, stage.plan_lines(longest, finest))
 
 
 def _motion(coordinates: Mapping[str, Array]) -> Iterator[tuple[str, str]]:
     """Yield how long a viscoelastic body is pressed and released."""
     if TIME.name in coordinates:
         last = coordinates[TIME.name].values[..., -1]
-        low, high = float(last.min()), float(last.max())
-        yield "motion", f"{format_quantity(low, 's', to=high if high > low else None)} from the first step to the last"
+        yield (
+            "motion",
+            f"{format_quantity(float(last.min()), 's', to=float(last.max()))} from the first step to the last",
+        )
 
 
 def _lateral(plan: "Plan") -> Iterator[tuple[str, str]]:
@@ -101,7 +103,7 @@ def _lateral(plan: "Plan") -> Iterator[tuple[str, str]]:
 def describe_result(result: ResultView, elapsed: float | None = None, *, left_out: bool = True) -> str:
     """Return what a result holds; ``elapsed`` [s] is the time of the whole run, ``left_out`` whether to say why."""
     left_out_lines = result.attrs["left_out"].splitlines() if left_out else ()
-    return format_table([*summary_lines(result, elapsed), *_indent("left out", left_out_lines)])
+    return format_table([*summary_lines(result, elapsed), *under("left out", left_out_lines)])
 
 
 def summary_lines(result: ResultView, elapsed: float | None = None) -> Iterator[tuple[str, str]]:
@@ -113,10 +115,10 @@ def summary_lines(result: ResultView, elapsed: float | None = None) -> Iterator[
         time = f"{format_seconds(elapsed)}; {time}, over all workers"
     yield "computed", f"{printable(attrs['title'])}: {_sizes(result.sweep, realizations, steps)}"
     yield "variables", ", ".join(result.curves)
-    yield from _indent("path", attrs.get("path", "").splitlines())
+    yield from under("path", attrs.get("path", "").splitlines())
     yield from _motion(result.coordinates)
-    yield from _indent("lattice", attrs.get("lattice", "").splitlines())
-    yield from _indent("map", attrs.get("map", "").splitlines())
+    yield from under("lattice", attrs.get("lattice", "").splitlines())
+    yield from under("map", attrs.get("map", "").splitlines())
     yield from describe_pull_off(result, _NOT_KNOWN)
     yield from _avalanches(result)
     yield from _contacts_at_ends(result)
@@ -125,13 +127,13 @@ def summary_lines(result: ResultView, elapsed: float | None = None) -> Iterator[
     yield from contact_pressure_lines(result)
     yield from conduction_lines(result)
     for noted in [stage.noted for stage in STAGES if stage.noted in attrs]:
-        yield from _indent(noted, attrs[noted].splitlines())
+        yield from under(noted, attrs[noted].splitlines())
     yield from advice_lines(attrs["scene"], result.largest("resolution_error"))
     yield from (line for stage in STAGES for line in stage.result_lines(result))
     yield from _adhesion(result)
-    yield from _indent("accuracy", attrs.get("accuracy", "").splitlines())
-    yield from _indent("failed", describe_failed(result).splitlines())
-    yield from _indent("warning", attrs.get("warnings", "").splitlines())
+    yield from under("accuracy", attrs.get("accuracy", "").splitlines())
+    yield from under("failed", describe_failed(result).splitlines())
+    yield from under("warning", attrs.get("warnings", "").splitlines())
     yield _numerical_error(result)
     yield "run time", time
 
@@ -156,13 +158,13 @@ def describe_ensemble(ensemble: Labelled) -> str:
     attrs = ensemble.attrs
     lines = [("asperities", f"{ensemble.sizes['asperity']} of shape {attrs['shape']}")]
     if "points_per_summit" in attrs:
-        lines += _indent("map", describe_map(attrs))
+        lines += under("map", describe_map(attrs))
         lines += [
             ("hills", "each has the profile of its best contacts, by size: ellipses on its own part of the map")
             if attrs.get("asperity_model") == "hills"
             else ("summits", "each is a paraboloid through a point above its eight neighbours, fitted to these")
         ]
-    return format_table([*lines, *_indent("warning", attrs.get("warnings", "").splitlines())])
+    return format_table([*lines, *under("warning", attrs.get("warnings", "").splitlines())])
 
 
 def describe_origin(result: ResultView, size: float | None) -> str:
@@ -174,7 +176,7 @@ def describe_origin(result: ResultView, size: float | None) -> str:
         ("made by", f"{attrs['source']}; {attrs['packages']}"),
         ("history", attrs["history"]),
     ]
-    return format_table([*lines, *_indent("scene", attrs["scene"].strip().splitlines())])
+    return format_table([*lines, *under("scene", attrs["scene"].strip().splitlines())])
 
 
 def describe_cells(result: ResultView) -> str:
@@ -241,10 +243,6 @@ def _avalanches(result: ResultView) -> Iterator[tuple[str, str]]:
     most, largest = (result.largest(f"avalanche_{name}") for name in ("count", "size_max"))
     if result.attrs.get("interaction") == "pairwise" and most > 0.0:
         yield "avalanches", f"up to {most:.0f} in a realisation; contacts that jump in the largest: {largest:.0f}"
-
-
-def _indent(name: str, lines: Iterable[str]) -> list[tuple[str, str]]:
-    return [(name if i == 0 else "", line) for i, line in enumerate(lines)]
 
 
 def _cell_line(result: ResultView, number: int, cell: tuple[int, ...]) -> tuple[str, ...]:

@@ -21,6 +21,7 @@ from roughmdr.model_error.parts import PARTS, TRUSTED_ERROR, TRUSTED_FRACTION
 from roughmdr.numerics.arguments import Floats
 from roughmdr.result.view import ResultView
 from roughmdr.schema.units import format_quantity
+from roughmdr.schema.wording import under
 from roughmdr.stages import stages_in
 from roughmdr.variables import LATERAL
 
@@ -67,7 +68,7 @@ def trust_lines(
     ]
     if not largest.size:
         yield "contact", _NO_AREA
-        yield from _several("model error", others)
+        yield from under("model error", others)
         yield "trust", f"the force is right where asperities are far apart, which is {_NO_AREA}"
         return
     tension = _known(at_pull_off)
@@ -83,7 +84,7 @@ def trust_lines(
         return
     if interaction == "pairwise":
         yield "model error", _coupling(known, summits)
-        yield from _several("", others)
+        yield from under("", others)
         yield "trust", _trust_coupled(known, summits)
         return
     if coefficients is None:
@@ -94,7 +95,7 @@ def trust_lines(
         yield from (("", f"and by {error}") for error in errors[1:])
         if len(places) > 1:
             yield "", _pull_off_error(tension)
-    yield from _several("", others)
+    yield from under("", others)
     yield "trust", _trust(known, coefficients, interaction)
     lone = known["interaction_error"].max() == 0.0
     if advise and interaction is None and not (tension.size or lone):
@@ -258,7 +259,3 @@ def _percent(share: float) -> str:
 def _range(shares: Floats) -> str:
     low, high = (_percent(float(share)) for share in (shares.min(), shares.max()))
     return high if low == high else f"{low.removesuffix(' %')} to {high}"
-
-
-def _several(name: str, lines: list[str]) -> Iterator[tuple[str, str]]:
-    yield from ((name if i == 0 else "", line) for i, line in enumerate(lines))

@@ -162,8 +162,8 @@ def format_quantity(
 ) -> str:
     """Format a quantity in SI with a prefix: "1.234 uN", with its error "1.23 ± 0.05 uN", as a range "0.2 to 1.5 um".
 
-    ``unit`` is that of ``value``, as in a scene or in a result; ``to`` is the other end of the range; ``digits`` are
-    those of both. A single quantity is read again by ``quantity``.
+    ``unit`` is that of ``value``, as in a scene or in a result; ``to`` is the other end of the range, told where it is
+    another number; ``digits`` are those of both. A single quantity is read again by ``quantity``.
     """
     spelled = _SPELLED.get(unit, unit)
     given = [abs(number) for number in (value, to, error) if number is not None and math.isfinite(number)]
@@ -171,7 +171,7 @@ def format_quantity(
     exponent = 0 if spelled == DIMENSIONLESS else _exponent(largest, _POWERS.get(spelled, 1))
     power = exponent * _POWERS.get(spelled, 1)
     text = _plain(value, power, digits)
-    if to is not None:
+    if to is not None and to != value:
         text += f" to {_plain(to, power, digits)}"
     if error is not None and math.isfinite(error):
         text += f" ± {_plain(error, power, _ERROR_DIGITS)}"

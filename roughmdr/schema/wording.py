@@ -1,7 +1,7 @@
 """Parts of messages: values as a scene gives them, names that may have been meant, sizes and times with units."""
 
 from collections import Counter
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 
 _MIN_SIMILARITY = 0.7  # of difflib's ratio: one or two letters of a word
 _LAYOUT = "\n\t"
@@ -49,6 +49,11 @@ def count_by_cell(lines: Iterable[str], cells: int) -> list[str]:
     return [
         line if count == cells else f"{line} (in {count} of {cells} cells)" for line, count in Counter(lines).items()
     ]
+
+
+def under(name: str, lines: Iterable[str]) -> Iterator[tuple[str, str]]:
+    """Yield lines of a table that belong to one name, which stands before the first."""
+    yield from ((name if number == 0 else "", line) for number, line in enumerate(lines))
 
 
 def format_table(lines: Iterable[tuple[str, str]]) -> str:
