@@ -45,8 +45,7 @@ class PathFinder:
 
 def _find(cell: Scene, start: float | None, stop: float | None) -> PathEnds:
     """Return the ends that are not given as separations [m]."""
-    from roughmdr.batch.clear_start import clear_start
-    from roughmdr.batch.target_stop import target_stop
+    from roughmdr.batch.found_ends import clear_start, target_stop
 
     clear = clear_start(cell) if start is None else None
     begin = clear if start is None else start

@@ -1,4 +1,4 @@
-"""The mean pressure in the contacts of a result, in words: by it a reader tells whether the bodies would yield."""
+"""Contacts of a result in words: their mean pressure, which tells whether bodies would yield, and errors of others."""
 
 from collections.abc import Iterator
 
@@ -9,6 +9,7 @@ from roughmdr.result.view import ResultView
 from roughmdr.schema.units import format_quantity
 
 _ELASTIC = "plastic flow is not modelled: above about the hardness of the softer body they yield, and become larger"
+_ERRORS = {"conductance": "conductance_error", "sticking": "tangential_error"}
 
 
 def contact_pressure_lines(result: ResultView) -> Iterator[tuple[str, str]]:
@@ -42,3 +43,12 @@ def _mean_area(result: ResultView, of: str) -> Floats | None:
     if result.holds(fraction := f"{of}contact_fraction") and "nominal_area" in result.variables:
         return np.asarray(result.mean(fraction)[0] * result.variables["nominal_area"].values[..., None])
     return None
+
+
+def conduction_lines(result: ResultView) -> Iterator[tuple[str, str]]:
+    """Yield within which errors these hold at given separation, where a result has them."""
+    for label, name in _ERRORS.items():
+        if name in result.variables:
+            known = result.known(name).size
+            within = f"at given separation within about {100.0 * result.largest(name):.2g} %" if known else ""
+            yield label, within or "its error is not known: the asperities have no nominal area"

@@ -8,8 +8,7 @@ from roughmdr.batch.plan import Plan
 from roughmdr.report.advice import advice_lines
 from roughmdr.report.documents import ForeseenTable, PlanTable, paragraphs, trust_table
 from roughmdr.report.few_contacts import foreseen_sample
-from roughmdr.report.plausible import implausible_lines
-from roughmdr.report.prospect import largest_tension, pressure_at_closest, prospect_lines
+from roughmdr.report.prospect import implausible_lines, largest_tension, pressure_at_closest, prospect_lines
 from roughmdr.report.result_document import coordinate_tables, swept_table
 from roughmdr.report.summary import foreseen_resolution
 

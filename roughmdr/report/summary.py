@@ -7,11 +7,9 @@ import numpy as np
 
 from roughmdr.ensemble.maps.words import describe_map
 from roughmdr.report.advice import advice_lines
-from roughmdr.report.conduction import conduction_lines
-from roughmdr.report.contact_pressure import contact_pressure_lines
+from roughmdr.report.contact_pressure import conduction_lines, contact_pressure_lines
 from roughmdr.report.few_contacts import foreseen_sample, sample_of_result
-from roughmdr.report.plausible import implausible_lines
-from roughmdr.report.prospect import prospect_lines
+from roughmdr.report.prospect import implausible_lines, prospect_lines
 from roughmdr.report.pull_off import describe_pull_off
 from roughmdr.result.trust import trust_of_result
 from roughmdr.result.view import ResultView

@@ -8,8 +8,8 @@ from pydantic import BeforeValidator
 
 from roughmdr.errors import OutOfRange
 from roughmdr.schema.faults import mismatch
+from roughmdr.schema.material import dundurs_beta, stiffness_ratio
 from roughmdr.schema.quantities import Quantity
-from roughmdr.schema.two_bodies import dundurs_beta, stiffness_ratio
 from roughmdr.stages.conduction import RADIUS
 from roughmdr.stages.given_scene import Given
 from roughmdr.stages.stage import Contacts, Law, Stage

@@ -15,8 +15,7 @@ from scipy.ndimage import gaussian_filter
 
 import roughmdr as rm
 from roughmdr.report.export.law import QUANTITIES, law_of
-from roughmdr.report.export.table import table_of
-from roughmdr.report.export.thin import RELATIVE_FROM
+from roughmdr.report.export.table import RELATIVE_FROM, table_of
 from roughmdr.result.between import CONFIDENCE
 from roughmdr.result.view import ResultView
 

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from roughmdr.errors import StoreError
-from roughmdr.report.export.thin import RELATIVE_FROM, knots, tolerances
+from roughmdr.report.export.table import RELATIVE_FROM, knots, tolerances
 from roughmdr.report.export.units import UnitSystem
 
 Floats = NDArray[np.float64]

@@ -17,7 +17,7 @@ from roughmdr.kernels.adhesion import Adhesion
 from roughmdr.loading.masing import Masing
 from roughmdr.loading.pull_off import WITHOUT_TENSION
 from roughmdr.numerics.arguments import Floats
-from roughmdr.schema.two_bodies import dundurs_beta, stiffness_ratio
+from roughmdr.schema.material import dundurs_beta, stiffness_ratio
 from roughmdr.stages.slip import FirstCurve, SlipConstants, partial_slip
 
 E, RATIO, MU = 4e9, 0.8, 0.3

@@ -3,11 +3,9 @@
 import math
 from collections.abc import Iterator
 
-from roughmdr.report.conduction import conduction_lines
-from roughmdr.report.contact_pressure import contact_pressure_lines
+from roughmdr.report.contact_pressure import conduction_lines, contact_pressure_lines
 from roughmdr.report.export.law import Quantity, Source
-from roughmdr.report.export.table import Table
-from roughmdr.report.export.thin import RELATIVE_FROM
+from roughmdr.report.export.table import RELATIVE_FROM, Table
 from roughmdr.report.export.units import UnitSystem
 from roughmdr.result.between import CONFIDENCE
 from roughmdr.result.trust import trust_of_result
