@@ -13,7 +13,7 @@ import numpy as np
 import xarray as xr
 
 import roughmdr as rm
-from roughmdr.batch.moments import Moments, MomentTree, add_curves
+from roughmdr.batch.moments import Moments, MomentTree, block_moments
 from roughmdr.batch.stopping_rule import FIRST, next_count, relative_error
 from roughmdr.numerics.arguments import Floats
 from roughmdr.scene.sections import Accuracy
@@ -73,7 +73,8 @@ class ForceSamples(NamedTuple):
             FIRST,
         )
         while count < target:
-            add_curves(moments, count, self.force[draws[count:target]])
+            for first, block in block_moments(count, self.force[draws[count:target]]):
+                moments.add(first, block)
             total = moments.total(target)
             assert total is not None
             count, target = target, next_count(target, relative_error(total), accuracy)

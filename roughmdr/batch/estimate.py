@@ -1,6 +1,5 @@
 """Time and memory of a run before it runs, from a short calibration on a small part of it."""
 
-import math
 import os
 import time
 from typing import NamedTuple
@@ -11,7 +10,7 @@ from roughmdr.batch.calibrate import Cost, measure
 from roughmdr.batch.costs import START_UP, beside, file_bytes, result_bytes, seconds
 from roughmdr.batch.plan import Plan
 from roughmdr.batch.rounds import Rounds
-from roughmdr.batch.tasks import BLOCK_SIZE, prepare_all, split_into_tasks
+from roughmdr.batch.tasks import prepare_all, split_into_tasks
 from roughmdr.errors import RoughmdrError
 from roughmdr.storage.memory import available_memory, peak_memory
 
@@ -19,7 +18,6 @@ BUDGET = 1.0
 """Seconds that a calibration may take."""
 _MAX_CELLS = 12
 _DISK = 3e8  # bytes a second: a slow disk
-_NUMBER = 8  # bytes
 _STEP_SECONDS = 3e-6  # of a step of the path itself
 
 
@@ -61,8 +59,6 @@ def estimate(plan: Plan, workers: int, budget: float = BUDGET) -> Estimate:
     cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
     busy = min(workers, tasks, cores)
     memory, file = result_bytes(plan, runs), file_bytes(plan, runs)
-    if plan.keeps_statistics:
-        memory += busy * min(BLOCK_SIZE, math.ceil(runs / tasks)) * _NUMBER * plan.steps * len(variables)
     computing = correction * foreseen_total / busy
     whole = START_UP + computing + file / _DISK + _STEP_SECONDS * plan.steps
     finer = sum(

@@ -136,9 +136,3 @@ class MomentTree(Generic[_Block]):
         if any(first not in self.blocks or self.blocks[first].size != size for first, size in sizes.items()):
             return None
         return reduce(lambda one, other: one.merged(other), (self.blocks[first] for first in sizes))
-
-
-def add_curves(tree: MomentTree[Moments], first: int, values: Floats) -> None:
-    """Add single realisations along the first axis to a tree."""
-    for begin, moments in block_moments(first, values):
-        tree.add(begin, moments)

@@ -12,7 +12,7 @@ from roughmdr import errors
 from roughmdr.aggregate import LoadingPath, LoadSeparation, prepare
 from roughmdr.batch.costs import seconds
 from roughmdr.batch.known_moments import KnownMoments
-from roughmdr.batch.moments import Moments, MomentTree, add_curves
+from roughmdr.batch.moments import Moments, MomentTree
 from roughmdr.batch.plan import Cell, Plan
 from roughmdr.batch.realization import simulate_realization
 from roughmdr.batch.resume.keys import check_versions, versions
@@ -28,7 +28,6 @@ _MIN_SECONDS, _USUAL_SECONDS, _MAX_SECONDS = 0.05, 0.1, 3.0  # of a task
 _MANY = 4000  # of so many tasks each may take longer than usual
 _TASKS_PER_WORKER = 8  # at least, so that all workers finish together
 _MAX_BYTES = 2**24  # of curves in a task, if it has more than one
-BLOCK_SIZE = 256  # curves in memory at a time, where moments are kept
 
 
 class RunRange(NamedTuple):
@@ -127,19 +126,13 @@ def _curves(runs: RunRange, names: Sequence[str]) -> Iterator[ResultRow]:
 def _moments(runs: RunRange, names: Sequence[str]) -> Iterator[ResultRow]:
     """Yield blocks of merged realisations; those that fail stand alone."""
     tree, pull_offs, rows = MomentTree[Moments](), MomentTree[KnownMoments](), dict[int, Row]()
-    for first in range(runs.first, runs.last, BLOCK_SIZE):
-        begin, curves = first, list[Floats]()
-        for realization in range(first, min(first + BLOCK_SIZE, runs.last)):
-            values, pull_off, rows[realization] = _run(runs, realization, names)
-            if rows[realization]["status"] == FAILED:
-                yield ResultRow(0, realization, Moments.of(values), pull_off, rows[realization])
-                add_curves(tree, begin, np.array(curves).reshape(-1, *values.shape))
-                begin, curves = realization + 1, []
-            else:
-                curves.append(values)
-                pull_offs.add(realization, pull_off)
-        if curves:
-            add_curves(tree, begin, np.array(curves))
+    for realization in range(runs.first, runs.last):
+        values, pull_off, rows[realization] = _run(runs, realization, names)
+        if rows[realization]["status"] == FAILED:
+            yield ResultRow(0, realization, Moments.of(values), pull_off, rows[realization])
+        else:
+            tree.add(realization, Moments.of(values))
+            pull_offs.add(realization, pull_off)
     for first, moments in tree.blocks.items():
         merged = merge_rows([rows[realization] for realization in range(first, first + moments.size)])
         yield ResultRow(0, first, moments, pull_offs.blocks[first], merged)

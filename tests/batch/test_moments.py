@@ -11,7 +11,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from roughmdr.batch.moments import Moments, MomentTree, add_curves, block_moments, dyadic_blocks, moments_of
+from roughmdr.batch.moments import Moments, MomentTree, block_moments, dyadic_blocks, moments_of
 
 ORDINARY = st.floats(-1e3, 1e3, allow_subnormal=False)
 EXTREME = st.one_of(
@@ -115,8 +115,8 @@ def test_there_is_no_total_where_one_is_missing(count: int, missing: int) -> Non
     missing %= count
     values = np.arange(float(count))[:, None]
     tree = MomentTree()
-    add_curves(tree, 0, values[:missing])
-    add_curves(tree, missing + 1, values[missing + 1 :])
+    for first in sorted(set(range(count)) - {missing}):
+        tree.add(first, Moments.of(values[first]))
     assert tree.total(count) is None
     assert tree.total(count + 1) is None
     tree.add(missing, Moments.of(values[missing]))

@@ -14,6 +14,7 @@ from scenes import ASPERITIES, scene
 import roughmdr as rm
 from roughmdr.ensemble.random.distribution import Distribution
 from roughmdr.ensemble.random.distribution_reader import DistributionReader
+from roughmdr.ensemble.streams import HEIGHT, PARAMETER, POPULATION, make_streams
 from roughmdr.scene import read
 
 UM = 1e-6
@@ -86,6 +87,22 @@ def test_heights_and_radii_are_correlated(rank: float) -> None:
     draws = [generate(realization=number, correlation={"radius": rank}).radius for number in range(40)]
     levels = [scipy.stats.kstest(radius, lognormal.cdf).pvalue for radius in draws]
     assert scipy.stats.kstest(levels, "uniform").pvalue > 0.01  # levels of a right law are evenly spread
+
+
+def test_constant_parameters_take_no_random_numbers() -> None:
+    drawn: list[int] = []
+
+    def streams(stream: int, count: int) -> np.ndarray:
+        drawn.append(stream)
+        return make_streams(1, 0)(stream, count)
+
+    equal = {**ASPERITIES, "radius": 50 * UM}
+    mixed = {**equal, "second": {"share": 0.3, "radius": ASPERITIES["radius"]}}
+    for entry, random in ((equal, [HEIGHT]), (mixed, [HEIGHT, PARAMETER, POPULATION])):
+        drawn.clear()
+        heights, parameters = read(scene(asperities=entry)).asperities.populations.draw(streams, 5)
+        assert sorted(drawn) == sorted(random)
+        assert heights.size == parameters["radius"].size == 5
 
 
 def test_two_populations_are_mixed_by_their_share() -> None:

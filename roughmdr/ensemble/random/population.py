@@ -85,8 +85,11 @@ class Populations:
 
     def draw(self, streams: Streams, count: int) -> tuple[Floats, dict[str, Floats]]:
         """Draw heights [m] and shape parameters [SI] of ``count`` asperities."""
-        level = streams(HEIGHT, count)
-        levels = {name: streams(stream, count) for name, stream in self.parameter_streams.items()}
+        level, random = streams(HEIGHT, count), self.random_streams
+        levels = {
+            name: streams(stream, count) if stream in random else level  # of a constant, which depends on none
+            for name, stream in self.parameter_streams.items()
+        }
         if self.correlated:
             levels[self.correlated] = self._correlated_levels(level, levels[self.correlated])
         first = self.members[0]
