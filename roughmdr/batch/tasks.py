@@ -21,7 +21,7 @@ from roughmdr.errors import RoughmdrError
 from roughmdr.loading.pull_off import PullOff
 from roughmdr.numerics.arguments import Floats
 from roughmdr.scene import Scene
-from roughmdr.variables import ADHESION_CODES, DONE, FAILED
+from roughmdr.variables import ADHESION_CODES, DONE, FAILED, RUN_DIAGNOSTICS
 
 _SINGLE_TASK = 0.1  # a batch that takes less [s] is one task: to load dask takes as long
 _MIN_SECONDS, _USUAL_SECONDS, _MAX_SECONDS = 0.05, 0.1, 3.0  # of a task
@@ -156,21 +156,12 @@ def _run(runs: RunRange, realization: int, names: Sequence[str]) -> tuple[Floats
 def diagnostics_of(result: LoadSeparation, scene: Scene) -> dict[str, object]:
     """Return the diagnostics of a realisation that its result tells, by their names in ``RUN_DIAGNOSTICS``."""
     return {
-        "numerical_error": result.numerical_error,
+        **{name: value for name, value in result._asdict().items() if name in RUN_DIAGNOSTICS},
         **result.model_error.named,
         "edge_slope": result.extremes.slope,
         "profile_extent": result.extremes.extent,
         "tabor_number": result.tabor if result.tabor < math.inf else math.nan,
         "adhesion_law": ADHESION_CODES.index(result.model if scene.work > 0.0 else "none"),
-        "overlap_count": result.overlap_count,
-        "marked_steps": result.marked_steps,
-        "effective_contacts": result.effective_contacts,
-        "grid_points": result.grid_points,
-        "reference_points": result.reference_points,
-        "conductance_error": result.conductance_error,
-        "tangential_error": result.tangential_error,
-        "avalanche_count": result.avalanche_count,
-        "avalanche_size_max": result.avalanche_size_max,
         "remark": "\n".join(result.warnings),
     }
 
