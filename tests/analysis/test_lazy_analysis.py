@@ -63,7 +63,8 @@ _MEASURE = """
 import sys
 import roughmdr, xarray, dask.array
 from scipy import special
-from roughmdr.analysis import accessor, interpolation, statistics, hysteresis, power_law
+from roughmdr.analysis import accessor, statistics, hysteresis, power_law
+from roughmdr.result import interpolation
 from roughmdr.storage.memory import peak_memory
 with xarray.open_dataset(sys.argv[1], chunks={"realization": 500}) as result:
     of = result.roughmdr
