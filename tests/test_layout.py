@@ -61,6 +61,24 @@ def imports(path: Path) -> set[str]:
     return names
 
 
+def defined(path: Path) -> list[str]:
+    """Every constant, function and class of a file, as often as it is defined."""
+    names: list[str] = []
+    for node in ast.parse(path.read_text()).body:
+        if isinstance(node, ast.FunctionDef | ast.ClassDef):
+            names.append(node.name)
+        elif isinstance(node, ast.Assign | ast.AnnAssign):
+            targets = node.targets if isinstance(node, ast.Assign) else [node.target]
+            names += [each.id for target in targets for each in ast.walk(target) if isinstance(each, ast.Name)]
+    return names
+
+
+def test_a_file_defines_a_name_once() -> None:
+    for path in FILES:
+        names = defined(path)
+        assert not (twice := {name for name in names if names.count(name) > 1}), f"{path} defines {twice} twice"
+
+
 def part(path: Path) -> str:
     return path.relative_to(PACKAGE).parts[0].removesuffix(".py")
 

@@ -22,7 +22,7 @@ from roughmdr.loading.staircase import no_memory
 from roughmdr.numerics.arguments import Floats
 
 _MAX_ITERATIONS = 200
-_RTOL = 1e-13  # of the force: a smaller step of Newton's method is the last
+_RTOL = 1e-13  # smallest step of Newton's method, over the force: a shorter one is the last
 
 ForceAndStiffness = Callable[[Floats], tuple[Floats, Floats]]
 """Separations [m] -> force [N] and stiffness -dF/dh [N/m] of independent asperities."""

@@ -11,7 +11,7 @@ from roughmdr.loading.first_reached import OutOfReach, first_reached
 from roughmdr.loading.machine import FIXED_GRIPS, MachinePath
 from roughmdr.numerics.arguments import Floats
 
-_RTOL = 1e-14  # of the distance from clear to where a contact fraction is reached
+_RTOL = 1e-14  # error of the separation, over its distance from clear
 _POINTS = 64  # of the unloading whose largest tension is looked for
 _MARGIN = 1.01  # over the stretch of the spring by that tension
 _MAX_RAISES, _RAISE = 40, 0.25  # of where no contact is left, by a part of the distance from the turning point

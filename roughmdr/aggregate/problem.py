@@ -19,7 +19,7 @@ from roughmdr.kernels.interface import Columns, Kernels
 from roughmdr.loading.path import LoadingPath
 from roughmdr.numerics.arguments import Floats
 
-_MARGIN = 1e-9  # of the depth of detachment, at which a contact still holds
+_MARGIN = 1e-9  # distance from the depth of detachment, over it: there a contact still holds
 
 
 class Problem:
@@ -95,7 +95,7 @@ class Problem:
             return highest
         for model in self.asked_adhesion.candidates:
             one = self.asked_adhesion._replace(model=model)
-            with np.errstate(all="ignore"):  # what no float can hold is NaN
+            with np.errstate(all="ignore"):  # NaN stands for numbers that no float can hold
                 depths = self.depths(one)
                 if not ((depths > 0.0) & (depths < math.inf)).all():
                     return math.nan

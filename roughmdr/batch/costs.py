@@ -111,7 +111,7 @@ def locates_jumps(cell: Cell, estimator: str) -> bool:
 
 def _jump_seconds(cell: Cell) -> float:
     """Return about how long it takes to locate the jumps by which all contacts are made, and lost [s]."""
-    assert isinstance(cell.controlled, MachinePath)  # as ``locates_jumps`` makes sure
+    assert isinstance(cell.controlled, MachinePath)  # ``locates_jumps`` makes sure
     scene, contacts = cell.scene, touching(cell)
     visit = _visit_seconds(scene.adhesion_model, scene.asperities.shape_name)
     visits = _JUMP_VISITS if scene.asperities.shape_name == "paraboloid" else _JUMP_VISITS_PROFILE

@@ -35,7 +35,6 @@ _MOST_HEIGHTS = {"gauss": 100, "equal_fractions": 5_000}
 """Of one score of the shape parameters."""
 _SHARE_POWER = {"gauss": 2.0 / 7.0, "equal_fractions": 1.0}
 _GROWTH = 1.3
-_ROWS = (FORCE, AREA, COUNT)
 _AT_ONCE = 2**21  # contacts
 
 

@@ -20,11 +20,11 @@ _TAIL_POWER, _FEWEST = 1.25, 4
 above the lowest. Measured on normal and exponential heights and on the summits of Gaussian surfaces, without adhesion:
 an error of 6e-4 takes 49, 61 and 123 nodes in place of 105, 549 and 271; powers 1 and 2 take more.
 """
-_NEGLIGIBLE = 1e-30  # of all heights
+_LEAST_FRACTION = 1e-30  # fraction of all heights: a point of less is left out
 
 Points = tuple[Floats, Floats]
 """Heights, ascending [m], and the fraction of all heights at each."""
-_NEGLIGIBLE = 1e-13  # of the spread: what is left of a vector is roundings
+_ROUNDINGS = 1e-13  # length of a vector of which rounding alone is left, over the spread
 
 
 def points_of(heights: HeightTable, lowest: float, count: int, name: str) -> Points:
@@ -45,7 +45,7 @@ def points_of(heights: HeightTable, lowest: float, count: int, name: str) -> Poi
     u = ((y - heights.low[own, None]) - (heights.high[own, None] - y)) / wide
     series = np.polynomial.chebyshev.chebvander(u, ORDER - 1) * heights.coefficients[own, 0][:, None, :]
     fractions = (series.sum(axis=-1) * half[:, None] * _WEIGHTS).ravel()
-    some = fractions > _NEGLIGIBLE
+    some = fractions > _LEAST_FRACTION
     return y.ravel()[some], fractions[some]
 
 
@@ -103,7 +103,7 @@ def gauss_of_points(x: Floats, weights: Floats, count: int) -> tuple[Floats, Flo
             for vector in vectors:
                 image = image - (image * vector).sum() * vector
         length = float(np.sqrt((image * image).sum()))
-        if len(diagonal) == count or length < _NEGLIGIBLE:
+        if len(diagonal) == count or length < _ROUNDINGS:
             break
         beside.append(length)
         vectors.append(image / length)

@@ -27,7 +27,7 @@ _COMPRESSED, _STRETCHED = BRANCH_COLOURS["loading"], BRANCH_COLOURS["unloading"]
 _SIZE = 7.4, 8.6  # of the figure [inches]
 _NEAR = 0.985  # of the contact radius, up to which the axis of pressure holds all
 _VISIBLE = 0.06  # of the height of a panel, above which a length is named
-_POINTS = 25  # of a spring
+_POINTS = 25  # points of a drawn spring
 _STRAIGHT = 2  # at each end
 
 

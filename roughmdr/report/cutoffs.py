@@ -36,7 +36,7 @@ _NOTES = (
     "give one only against noise that was measured. Pressures are those at which contacts of independent asperities",
     "add up to 1, 2 and 5 % of the nominal area on loading; mean radius is 1/<1/R>.",
 )
-_RTOL = 1e-10  # of the separation, over its distance from where nothing touches
+_RTOL = 1e-10  # error of the separation, over its distance from where nothing touches
 
 
 def tabulate_cutoffs(scene: Scene, lengths: str) -> str:

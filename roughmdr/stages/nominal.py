@@ -26,7 +26,7 @@ _BODIES = {name: shape for name, shape in SCENE_SHAPES.items() if not shape.shar
 _UNITS = {name: unit for shape in _BODIES.values() for name, unit in shape.units.items()}
 _COMPUTED = ("force", "contact_area", "contact_count", "contact_radius_sum", "stiffness", "model_error_curve")
 """Variables of a law under a curved body."""
-_FORESEEN_ERROR = 1e-2  # of the force, as its law is foreseen
+_FORESEEN_ERROR = 1e-2  # relative error of the force of a foreseen law
 _TABLES, _STEP, _NODE = 5e-2, 1.5e-2, 5e-2
 """Seconds: tables of each node, a step on all rings, and with adhesion each node of the first rule at a step."""
 
@@ -142,7 +142,7 @@ class _Nominal(Stage):
         layer = curved.Layer(scene.asperities, scene.effective_modulus, scene.adhesion_model)
 
         def law(path: "Path", names: list[str]) -> "LoadSeparation":
-            assert isinstance(path, LoadingPath)  # as ``check`` makes sure
+            assert isinstance(path, LoadingPath)  # ``check`` makes sure
             return curved.compute(layer, self.body, path, error=self.error, variables=names)
 
         return law

@@ -101,7 +101,7 @@ class Reference(Stage):
         def law(path: "Path", names: list[str]) -> "LoadSeparation":
             from roughmdr.loading.path import LoadingPath
 
-            assert isinstance(path, LoadingPath)  # as ``check`` makes sure
+            assert isinstance(path, LoadingPath)  # ``check`` makes sure
             asked = [name for name in names if name not in REFERENCE_VARIABLES]
             return self._beside(contacts.law(path, asked).only(asked), scene, path.separation, drawn)
 

@@ -126,7 +126,7 @@ class Tangential(Stage):
         from roughmdr.stages.slip import SlipConstants
 
         ratio = self.ratio(scene)
-        assert ratio is not None  # as ``check`` makes sure
+        assert ratio is not None  # ``check`` makes sure
         return SlipConstants(scene.effective_modulus, ratio, math.nan if self.friction is None else self.friction)
 
     def inner_variables(self, names: list[str]) -> list[str]:

@@ -59,7 +59,7 @@ class Viscoelastic(Stage):
         "output": {"variables": ["force", "contact_area"]},
     }
     unlike = "bodies that relax"
-    more_separations = 5000  # of the integral over the time, with kinked curves
+    more_separations = 5000  # points of the integral over the time, where curves have kinks
 
     relaxation: Annotated[list[RelaxationTerm], Field(min_length=1)]
     speed: _Speed
@@ -141,7 +141,7 @@ class Viscoelastic(Stage):
             return contacts.law(LoadingPath.along(separation, unload=False, adhesive=False), names)
 
         def law(path: "Path", names: list[str]) -> "LoadSeparation":
-            assert isinstance(path, LoadingPath)  # as ``check`` makes sure
+            assert isinstance(path, LoadingPath)  # ``check`` makes sure
             _check_order(path.separation)
             clear = float(np.nextafter(contacts.highest(), np.inf))  # a contact at first touch is none there
             area = contacts.nominal_area

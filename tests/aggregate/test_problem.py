@@ -1,4 +1,4 @@
-"""What follows from an ensemble and its material is found once, whatever is asked of it."""
+"""A Problem finds all that follows from an ensemble and its material once, whatever is asked of it."""
 
 from collections import Counter
 from typing import Any

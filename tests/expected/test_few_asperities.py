@@ -136,6 +136,20 @@ def test_a_rule_keeps_the_number_and_the_mean_height(name: str, count: int) -> N
         np.testing.assert_allclose(weights, 1.0 / count, rtol=0.05)
 
 
+@pytest.mark.parametrize("name", RULES)
+def test_the_highest_summits_are_kept_however_few(name: str) -> None:
+    """Above 8 sigma there are 6e-16 of all normal heights."""
+    from scipy.stats import norm
+
+    from roughmdr.ensemble.nodes import Rule
+
+    heights = HeightTable.of(read(scene()).asperities.nodes(Rule.smooth(1)).heights[0])
+    y, fractions = points_of(heights, 8e-6 - heights.origin, 4, name)
+    mean = norm.pdf(8.0) / norm.sf(8.0)
+    assert fractions.sum() == pytest.approx(norm.sf(8.0), rel=1e-3)
+    assert float((fractions * (y + heights.origin)).sum() / fractions.sum()) == pytest.approx(1e-6 * mean, rel=1e-5)
+
+
 @pytest.mark.parametrize("size", [1e-9, 1.0])
 def test_in_other_units_they_are_the_same_nodes(size: float) -> None:
     asperities = {

@@ -87,7 +87,7 @@ class Populations:
         """Draw heights [m] and shape parameters [SI] of ``count`` asperities."""
         level, random = streams(HEIGHT, count), self.random_streams
         levels = {
-            name: streams(stream, count) if stream in random else level  # of a constant, which depends on none
+            name: streams(stream, count) if stream in random else level  # constants depend on no level
             for name, stream in self.parameter_streams.items()
         }
         if self.correlated:

@@ -17,7 +17,7 @@ MOST_ERROR = 0.1
 _FEWEST = 4
 """Steps that tell how far a law is off the lines between them."""
 RELATIVE_FROM = 0.1
-"""Of the largest value: from here on a tolerance is relative to the value itself, below to this part of the largest."""
+"""Part of the largest value from which a tolerance is relative to the value itself; below it is to this part."""
 
 
 class Table(NamedTuple):

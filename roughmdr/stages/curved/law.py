@@ -23,8 +23,8 @@ _MAX_ERROR = 0.1  # of the largest force: a larger error is refused
 _FEW = 10  # contacts, of whose number the standard deviation is a third
 _OF_LAYER = ("model_error_curve",)
 """Variables that are those of the layer where it is pressed most."""
-_PARTS, _MAX_ROUNDS = 8, 12  # of the steps beside the lowest force, which are divided again and again
-_FINE = 0.1  # of the error of the force: steps whose forces differ by less are close enough
+_PARTS, _MAX_ROUNDS = 8, 12  # parts of the steps beside the lowest force, and how often they are divided
+_FINE = 0.1  # difference of forces, over their error, at which steps are close enough
 
 
 def compute(layer: Layer, shape: Shape, path: LoadingPath, *, error: float, variables: Iterable[str]) -> LoadSeparation:
