@@ -90,7 +90,7 @@ class ResultTable(TypedDict):
     trust: dict[str, str | None]  # "contact", "model_error", "trust": in words
     sample: str | None  # where few contacts carry the load
     advice: str | None
-    reference: str | None
+    reference: str | None  # other sections that tell something of a result have a key of their own
     accuracy: str | None
     failed: str | None
     warnings: list[str]

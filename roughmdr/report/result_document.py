@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 from pathlib import Path
+from typing import cast
 
 import numpy as np
 
@@ -28,7 +29,7 @@ from roughmdr.variables import STATUSES
 def result_table(result: ResultView, file: Path | None, elapsed: float | None = None) -> ResultTable:
     """Return all that ``describe_result`` tells, as numbers; ``elapsed`` [s] is the time of the whole run."""
     attrs, sizes = result.attrs, result.sweep
-    return {
+    table: ResultTable = {
         "title": attrs["title"],
         "file": None if file is None else str(file),
         "file_size": None if file is None else file.stat().st_size,
@@ -45,7 +46,7 @@ def result_table(result: ResultView, file: Path | None, elapsed: float | None = 
         "trust": trust_table(trust_of_result(result)),
         "sample": paragraphs(sample_of_result(result)).get("sample"),
         "advice": paragraphs(advice_lines(attrs["scene"], result.largest("resolution_error"))).get("advice"),
-        "reference": paragraphs(line for stage in STAGES for line in stage.result_lines(result)).get("reference"),
+        "reference": None,
         "accuracy": attrs.get("accuracy") or None,
         "failed": describe_failed(result) or None,
         "warnings": attrs.get("warnings", "").splitlines(),
@@ -61,6 +62,8 @@ def result_table(result: ResultView, file: Path | None, elapsed: float | None = 
         "history": attrs["history"].splitlines(),
         "scene": attrs["scene"],
     }
+    told = paragraphs(line for stage in STAGES for line in stage.result_lines(result))
+    return cast("ResultTable", {**table, **told})
 
 
 def coordinate_tables(coordinates: Mapping[str, Array], sizes: dict[str, int]) -> dict[str, CoordinateTable]:

@@ -7,8 +7,11 @@ from scenes import scene
 
 import roughmdr as rm
 from roughmdr.report.citations_of_stages import OF_STAGES
+from roughmdr.report.result_document import result_table
+from roughmdr.result.view import ResultView
 from roughmdr.scene import Scene, read
 from roughmdr.stages import STAGES, stages_in
+from roughmdr.stages.conduction import Conduction
 from roughmdr.stages.stage import Stage
 from roughmdr.variables import OUTPUT_VARIABLES, RESULT_ATTRIBUTES
 
@@ -53,6 +56,15 @@ def test_two_that_make_another_law_are_refused(changes: dict[str, Any], says: st
     with pytest.raises(rm.SceneError) as refused:
         read(scene(adhesion=None, **{"path": path, **changes}))
     assert says in str(refused.value)
+
+
+def test_what_a_section_tells_of_a_result_is_in_its_summary_and_its_table(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(Conduction, "result_lines", lambda result: iter([(Conduction.key, "told of the contacts")]))
+    result = rm.run(scene(batch={"realizations": 1}, path={"separation": ["1 um", "0 um"]}))
+    assert "told of the contacts" in rm.info(result)
+    table = result_table(ResultView(result), None)
+    assert table["conduction"] == "told of the contacts"
+    assert table["reference"] is None
 
 
 def test_the_spelling_of_a_scene_decides_no_key() -> None:
