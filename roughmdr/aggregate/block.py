@@ -82,5 +82,5 @@ def prepare_of(kernels: Kernels, columns: Columns, material: Material) -> Callab
     return as_argument(kernels.prepare, material, columns, 0, 0, 0.0, 0.0)
 
 
-law = SumKernels("law")
+kernel = SumKernels("kernel")
 """Stands for the kernels in parts of the sum that ``specialise`` is given."""

@@ -131,10 +131,10 @@ def prepare(
     rows = {totals.TOTAL_INDEX[name] for name in variables}
     for model in adhesion.candidates if interaction is None or interaction.model != "pairwise" else ():
         one = Adhesion(float(adhesion.work > 0.0), model, 1.0)
-        law = choose(shape, one, params)
-        loop.sum_over_asperities(law, np.zeros(1), columns, 1.0, one, np.zeros(1), no_memory(np.zeros(1)), rows)
-        if law.adhesive and unload:
-            detachments(law, columns, 1.0, one)
+        kernels = choose(shape, one, params)
+        loop.sum_over_asperities(kernels, np.zeros(1), columns, 1.0, one, np.zeros(1), no_memory(np.zeros(1)), rows)
+        if kernels.adhesive and unload:
+            detachments(kernels, columns, 1.0, one)
             prepare_pull_off()
     if adhesion.work > 0.0:
         jkr_validity(shape, 0.0, columns, 1.0, adhesion._replace(work=1.0, strength=1.0))

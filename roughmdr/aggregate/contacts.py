@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from roughmdr.aggregate.block import DEPTH_SCALE, PER_DEPTH, Block, law
+from roughmdr.aggregate.block import DEPTH_SCALE, PER_DEPTH, Block, kernel
 from roughmdr.kernels.blocks import FORCE, IN_CONTACT, RADIUS, STATE, STATE_ERROR, STIFFNESS, TERM
 from roughmdr.kernels.profile.layout import BRANCHED
 from roughmdr.loading.staircase import Staircase
@@ -23,7 +23,7 @@ def update_contact(count: int, block: Block, memory: Staircase, begin: int, end:
 
 def follow_pairs(count: int, block: Block, touched: float, memory: Staircase, begin: int, end: int) -> None:
     """Find which of the first ``count`` asperities are in contact, where there is one branch."""
-    law.update_contact(count, block, memory, begin, end)
+    kernel.update_contact(count, block, memory, begin, end)
 
 
 def follow_branches(count: int, block: Block, touched: float, memory: Staircase, begin: int, end: int) -> None:
@@ -32,17 +32,17 @@ def follow_branches(count: int, block: Block, touched: float, memory: Staircase,
     """
     z, params, contacts = block.z, block.params, block.contacts
     for i in range(count):
-        contacts[IN_CONTACT, i] = law.branch(
-            contacts[TERM, i], contacts[IN_CONTACT, i], z[i] >= touched, law.params_of(params, i)
+        contacts[IN_CONTACT, i] = kernel.branch(
+            contacts[TERM, i], contacts[IN_CONTACT, i], z[i] >= touched, kernel.params_of(params, i)
         )
 
 
 def follow_either(count: int, block: Block, touched: float, memory: Staircase, begin: int, end: int) -> None:
     """Do as ``follow_branches`` or as ``follow_pairs``, as the rows tell."""
     if block.params[0, BRANCHED] > 0.0:
-        law.follow_branches(count, block, touched, memory, begin, end)
+        kernel.follow_branches(count, block, touched, memory, begin, end)
     else:
-        law.update_contact(count, block, memory, begin, end)
+        kernel.update_contact(count, block, memory, begin, end)
 
 
 def solve_closed(
@@ -54,16 +54,16 @@ def solve_closed(
     """
     z, params = block.z, block.params
     scales, contacts = block.scales, block.contacts
-    if law.adhesive:
-        law.update_contact(count, block, memory, begin, end)
+    if kernel.adhesive:
+        kernel.update_contact(count, block, memory, begin, end)
         for i in range(count):
             x = ((z[i] - h) + scales[DEPTH_SCALE, i]) * scales[PER_DEPTH, i]
-            contacts[STATE, i] = law.state(x if contacts[IN_CONTACT, i] > 0.0 else 1.0, law.params_of(params, i))
+            contacts[STATE, i] = kernel.state(x if contacts[IN_CONTACT, i] > 0.0 else 1.0, kernel.params_of(params, i))
     else:
         for i in range(count):
-            contacts[STATE, i] = law.state((z[i] - h) * scales[PER_DEPTH, i], law.params_of(params, i))
-    if law.found_together:
-        law.evaluate_all(count, block.contacts, block.params)
+            contacts[STATE, i] = kernel.state((z[i] - h) * scales[PER_DEPTH, i], kernel.params_of(params, i))
+    if kernel.found_together:
+        kernel.evaluate_all(count, block.contacts, block.params)
 
 
 def solve_refined(
@@ -72,11 +72,11 @@ def solve_refined(
     """Do as ``solve_closed`` in several steps, a loop for each, so that no contact waits for another."""
     params, contacts = block.params, block.contacts
     state, x = contacts[STATE], contacts[TERM]
-    law.guess_states(count, block, h, adhesion_range, memory, begin, end)
-    for _ in range(law.refinements):
+    kernel.guess_states(count, block, h, adhesion_range, memory, begin, end)
+    for _ in range(kernel.refinements):
         for i in range(count):
-            state[i] = law.refined(state[i], x[i], law.params_of(params, i))
-    law.evaluate_all(count, block.contacts, block.params)
+            state[i] = kernel.refined(state[i], x[i], kernel.params_of(params, i))
+    kernel.evaluate_all(count, block.contacts, block.params)
 
 
 def guess_states(
@@ -85,11 +85,11 @@ def guess_states(
     """Do as ``place``, and guess the states."""
     params, contacts = block.params, block.contacts
     state, x = contacts[STATE], contacts[TERM]
-    law.place(count, block, h, adhesion_range, memory, begin, end)
+    kernel.place(count, block, h, adhesion_range, memory, begin, end)
     for i in range(count):
-        state[i] = law.y_of_x(x[i], law.params_of(params, i)) if law.iterative else x[i]
+        state[i] = kernel.y_of_x(x[i], kernel.params_of(params, i)) if kernel.iterative else x[i]
     for i in range(count):
-        state[i] = law.initial_guess(state[i], law.params_of(params, i))
+        state[i] = kernel.initial_guess(state[i], kernel.params_of(params, i))
 
 
 def solve_iterative(
@@ -98,19 +98,19 @@ def solve_iterative(
     """Do as ``solve_closed`` by what is the same for all contacts, as vector code, and a search for some."""
     params, contacts = block.params, block.contacts
     state, error, in_contact, x = contacts[STATE], contacts[STATE_ERROR], contacts[IN_CONTACT], contacts[TERM]
-    law.guess_states(count, block, h, adhesion_range, memory, begin, end)
-    law.find_all(count, contacts, params)
+    kernel.guess_states(count, block, h, adhesion_range, memory, begin, end)
+    kernel.find_all(count, contacts, params)
     unknown = 0
     for i in range(count):
-        branch = in_contact[i] if law.adhesive else 1.0
-        unknown += (branch > 0.0) & (law.converged(error[i], branch, law.params_of(params, i)) < 1)
+        branch = in_contact[i] if kernel.adhesive else 1.0
+        unknown += (branch > 0.0) & (kernel.converged(error[i], branch, kernel.params_of(params, i)) < 1)
     if unknown > 0:
         for i in range(count):
-            branch, own = in_contact[i] if law.adhesive else 1.0, law.params_of(params, i)
-            if branch > 0.0 and not law.converged(error[i], branch, own):
-                t, left, _ = law.one_step(state[i], x[i], own)  # from a state that may be below 0: then none converges
-                state[i] = t if law.converged(left, branch, own) else law.state_on_branch(x[i], branch, own)
-                contacts[RADIUS, i], contacts[FORCE, i], contacts[STIFFNESS, i] = law.radius_force_stiffness(
+            branch, own = in_contact[i] if kernel.adhesive else 1.0, kernel.params_of(params, i)
+            if branch > 0.0 and not kernel.converged(error[i], branch, own):
+                t, left, _ = kernel.one_step(state[i], x[i], own)  # from a state below 0 it does not converge
+                state[i] = t if kernel.converged(left, branch, own) else kernel.state_on_branch(x[i], branch, own)
+                contacts[RADIUS, i], contacts[FORCE, i], contacts[STIFFNESS, i] = kernel.radius_force_stiffness(
                     state[i], own
                 )
 
@@ -120,12 +120,12 @@ def solve_each(
 ) -> None:
     """Do as ``solve_closed`` for contacts that are solved one by one."""
     params, contacts = block.params, block.contacts
-    law.place(count, block, h, adhesion_range, memory, begin, end)
+    kernel.place(count, block, h, adhesion_range, memory, begin, end)
     for i in range(count):
         state, a, force, stiffness = 0.0, 0.0, 0.0, 0.0
         if contacts[IN_CONTACT, i] > 0.0:
             x, branch = contacts[TERM, i], contacts[IN_CONTACT, i]
-            state, a, force, stiffness = law.contact_at(x, branch, law.params_of(params, i))
+            state, a, force, stiffness = kernel.contact_at(x, branch, kernel.params_of(params, i))
         contacts[STATE, i], contacts[RADIUS, i] = state, a
         contacts[FORCE, i], contacts[STIFFNESS, i] = force, stiffness
 
@@ -137,28 +137,28 @@ def place(count: int, block: Block, h: float, adhesion_range: float, memory: Sta
     branch at the step before, and then the new one.
     """
     z, scales, contacts = block.z, block.scales, block.contacts
-    lift = 1.0 if law.adhesive else 0.0
+    lift = 1.0 if kernel.adhesive else 0.0
     for i in range(count):
         contacts[TERM, i] = max(((z[i] - h) + lift * scales[DEPTH_SCALE, i]) * scales[PER_DEPTH, i], 0.0)
-    if law.adhesive:
-        law.follow(count, block, h - adhesion_range, memory, begin, end)
+    if kernel.adhesive:
+        kernel.follow(count, block, h - adhesion_range, memory, begin, end)
         for i in range(count):
             contacts[TERM, i] = contacts[TERM, i] if contacts[IN_CONTACT, i] > 0.0 else 1.0
 
 
 def radius_of_state(contacts: Floats, params: Any, i: int) -> float:
     """Return a of one contact over its natural scale."""
-    return law.radius(contacts[STATE, i], law.params_of(params, i))
+    return kernel.radius(contacts[STATE, i], kernel.params_of(params, i))
 
 
 def force_of_state(contacts: Floats, params: Any, i: int) -> float:
     """Return P of one contact over its natural scale."""
-    return law.force(contacts[STATE, i], law.params_of(params, i))
+    return kernel.force(contacts[STATE, i], kernel.params_of(params, i))
 
 
 def stiffness_of_state(contacts: Floats, params: Any, i: int) -> float:
     """Return k of one contact over its natural scale."""
-    return law.stiffness(contacts[STATE, i], law.params_of(params, i))
+    return kernel.stiffness(contacts[STATE, i], kernel.params_of(params, i))
 
 
 def found_radius(contacts: Floats, params: Any, i: int) -> float:

@@ -7,7 +7,7 @@ import numpy as np
 
 from roughmdr.aggregate.block import prepare_of
 from roughmdr.kernels.adhesion import Adhesion
-from roughmdr.kernels.interface import Columns, Kernels, Material, law
+from roughmdr.kernels.interface import Columns, Kernels, Material, kernel
 from roughmdr.numerics.arguments import Floats
 from roughmdr.numerics.jit import once, specialise
 from roughmdr.numerics.summation import BLOCK
@@ -29,12 +29,12 @@ def _fill(columns: Columns, material: Material, prepare: Callable[..., Any], fou
         stop = min(start + BLOCK, depth.size)
         params = prepare(material, columns, start, stop, 0.0, 0.0)
         for i in range(start, stop):
-            own = law.params_of(params, i - start)
-            (depth[i], _), size, _, _ = law.scales(
+            own = kernel.params_of(params, i - start)
+            (depth[i], _), size, _, _ = kernel.scales(
                 material.effective_modulus, material.work, columns.width[i], columns.rise[i], own
             )
-            if not law.cohesive:
-                radius[i] = size * law.radius(law.state(0.0, own), own) if depth[i] > 0.0 else 0.0
+            if not kernel.cohesive:
+                radius[i] = size * kernel.radius(kernel.state(0.0, own), own) if depth[i] > 0.0 else 0.0
 
 
 @once

@@ -18,7 +18,7 @@ u (g + dl) with g = z - h + dl, are added to eta. Where the state comes from the
 
 import math
 
-from roughmdr.aggregate.block import DEPTH_SCALE, FORCE_SCALE, PER_DEPTH, STIFFNESS_SCALE, Block, law
+from roughmdr.aggregate.block import DEPTH_SCALE, FORCE_SCALE, PER_DEPTH, STIFFNESS_SCALE, Block, kernel
 from roughmdr.kernels.blocks import FORCE, IN_CONTACT, RADIUS, STATE, STATE_ERROR, STIFFNESS, TERM
 from roughmdr.numerics.double_double import ROUNDING
 from roughmdr.numerics.jit import njit
@@ -33,7 +33,7 @@ def total_error(count: int, block: Block, h: float, stiffness: float, force_erro
     ``force_error`` [N] is the sum of the errors of their forces, each at its state; ``rounding`` the relative error of
     z - h as a term of the computed indentation.
     """
-    deepest = block.max_scales[DEPTH_SCALE] if law.adhesive else 0.0
+    deepest = block.max_scales[DEPTH_SCALE] if kernel.adhesive else 0.0
     farthest = max(abs(block.z[0]), abs(block.z[count - 1])) + abs(h) + deepest
     return float(stiffness * (4.0 * ROUNDING + _NEXT_TO_A_FOLD * rounding) * farthest + force_error)
 
@@ -52,26 +52,26 @@ def bound_block(count: int, block: Block, h: float, retracted: bool) -> float:
     state below that of first touch, x = 1.
     """
     params, contacts = block.params, block.contacts
-    first, terms = law.params_of(params, 0), contacts[TERM]
-    lift = block.max_scales[DEPTH_SCALE] if law.adhesive else 0.0
-    high = law.state(((block.z[0] - h) + lift) * block.max_scales[PER_DEPTH], first)
+    first, terms = kernel.params_of(params, 0), contacts[TERM]
+    lift = block.max_scales[DEPTH_SCALE] if kernel.adhesive else 0.0
+    high = kernel.state(((block.z[0] - h) + lift) * block.max_scales[PER_DEPTH], first)
     low = high
-    if law.adhesive:
-        low = law.state(1.0, first)
+    if kernel.adhesive:
+        low = kernel.state(1.0, first)
         if retracted:
             for i in range(count):
                 terms[i] = contacts[STATE, i] if contacts[IN_CONTACT, i] > 0.0 else math.inf
             low = max(min(low, block_minimum(terms, count)), ROUNDING)
-    stiffness = max(abs(law.stiffness(low, first)), abs(law.stiffness(high, first)))
-    least_force = 1.0 if law.adhesive else 0.0  # without adhesion the natural force is no force of this contact
-    error = max(least_force, abs(law.force(high, first))) * law.relative_errors(first)[0]
-    if not law.alike and law.heterogeneous(params):
+    stiffness = max(abs(kernel.stiffness(low, first)), abs(kernel.stiffness(high, first)))
+    least_force = 1.0 if kernel.adhesive else 0.0  # without adhesion the natural force is no force of this contact
+    error = max(least_force, abs(kernel.force(high, first))) * kernel.relative_errors(first)[0]
+    if not kernel.alike and kernel.heterogeneous(params):
         for i in range(count):
-            own, state = law.params_of(params, i), contacts[STATE, i]
-            stiffness = max(stiffness, abs(law.stiffness(max(state, low), own)))
-            error = max(error, abs(law.force(state, own)) * law.relative_errors(own)[0])
+            own, state = kernel.params_of(params, i), contacts[STATE, i]
+            stiffness = max(stiffness, abs(kernel.stiffness(max(state, low), own)))
+            error = max(error, abs(kernel.force(state, own)) * kernel.relative_errors(own)[0])
     stiffness = count * stiffness * block.max_scales[STIFFNESS_SCALE]
-    return law.total_error(count, block, h, stiffness, count * error * block.max_scales[FORCE_SCALE], 0.0)
+    return kernel.total_error(count, block, h, stiffness, count * error * block.max_scales[FORCE_SCALE], 0.0)
 
 
 def bound_each(count: int, block: Block, h: float, retracted: bool) -> float:
@@ -79,22 +79,22 @@ def bound_each(count: int, block: Block, h: float, retracted: bool) -> float:
     contacts, params = block.contacts, block.params
     scales, terms, stiffness = block.scales, contacts[TERM], contacts[STATE_ERROR]
     for i in range(count):
-        own = law.params_of(params, i)
-        of_force, of_indentation = law.relative_errors(own)
+        own = kernel.params_of(params, i)
+        of_force, of_indentation = kernel.relative_errors(own)
         k, force = abs(contacts[STIFFNESS, i]), abs(contacts[FORCE, i])
         each = of_force * force
-        if law.adhesive:
-            stretch, pull = law.adhesion_terms(contacts[RADIUS, i], own)
+        if kernel.adhesive:
+            stretch, pull = kernel.adhesion_terms(contacts[RADIUS, i], own)
             k = min(k, pull / stretch / ROUNDING)  # next to the fold, where k is infinite, a bound of |k| eta
             each = of_force * (force + 2.0 * pull) + 2.0 * _NEXT_TO_A_FOLD * of_indentation * k * stretch
-        if law.terms_cancel:
-            g, size = law.term_sizes(contacts[STATE, i], own)
+        if kernel.terms_cancel:
+            g, size = kernel.term_sizes(contacts[STATE, i], own)
             each += of_force * size + _NEXT_TO_A_FOLD * of_indentation * k * g
-        terms[i] = scales[FORCE_SCALE, i] * each if not law.adhesive or contacts[IN_CONTACT, i] > 0.0 else 0.0
-        stiffness[i] = scales[STIFFNESS_SCALE, i] * k if not law.adhesive or contacts[IN_CONTACT, i] > 0.0 else 0.0
+        terms[i] = scales[FORCE_SCALE, i] * each if not kernel.adhesive or contacts[IN_CONTACT, i] > 0.0 else 0.0
+        stiffness[i] = scales[STIFFNESS_SCALE, i] * k if not kernel.adhesive or contacts[IN_CONTACT, i] > 0.0 else 0.0
     error = sum_by_halves(terms, count, BLOCK)
     sum_of_stiffness = sum_by_halves(stiffness, count, BLOCK)
     for i in range(count):
-        of_indentation = law.relative_errors(law.params_of(params, i))[1]
-        terms[i] = -of_indentation if not law.adhesive or contacts[IN_CONTACT, i] > 0.0 else 0.0
-    return law.total_error(count, block, h, sum_of_stiffness, error, -block_minimum(terms, count))
+        of_indentation = kernel.relative_errors(kernel.params_of(params, i))[1]
+        terms[i] = -of_indentation if not kernel.adhesive or contacts[IN_CONTACT, i] > 0.0 else 0.0
+    return kernel.total_error(count, block, h, sum_of_stiffness, error, -block_minimum(terms, count))

@@ -19,7 +19,7 @@ from roughmdr.aggregate.block import (
     Block,
     SumKernels,
     Totals,
-    law,
+    kernel,
     prepare_of,
 )
 from roughmdr.aggregate.contacts import (
@@ -100,7 +100,7 @@ def count_above(height: Floats, lowest: float) -> int:
 
 def lowest_in_contact(begin: int, end: int, memory: Staircase, deepest: float) -> float:
     """Return the lowest height that can be in contact: the least max(bottom, top - deepest) of the staircase."""
-    if not law.adhesive:
+    if not kernel.adhesive:
         return float(memory.bottom[begin])
     lowest = math.inf
     for j in range(begin, end):
@@ -120,58 +120,58 @@ def _loop(
     """Add all asperities to the totals that are wanted (zeros before); return the number of visits.
 
     Return _NOT_REPRESENTABLE where a scale of an asperity in contact is not representable. ``prepare`` as in
-    ``Kernels``; ``compiled_sum`` says which functions the names of ``law`` stand for.
+    ``Kernels``; ``compiled_sum`` says which functions the names of ``kernel`` stand for.
     """
     visits = 0
     separation, turn, memory = steps.separation, steps.turn, steps.memory
     closest = separation[turn] - adhesion_range
     scales, contacts, max_scales = np.empty((SCALES, BLOCK)), np.empty((CONTACT_ROWS, BLOCK)), np.empty(SCALES)
     total, compensation, wanted = totals.total, totals.compensation, totals.wanted
-    if law.shared:
+    if kernel.shared:
         params = prepare(material, columns, 0, height.size, 0.0, height[0] - separation[turn])
     for start in range(0, height.size, BLOCK):
         z = height[start : min(start + BLOCK, height.size)]
         if z[0] < closest:
             break
-        if not law.shared:
+        if not kernel.shared:
             params = prepare(material, columns, start, start + z.size, 0.0, z[0] - separation[turn])
         block = Block(z, params, scales, max_scales, contacts)
-        if not law.natural_scales(block, columns, start, material):
+        if not kernel.natural_scales(block, columns, start, material):
             visits = _NOT_REPRESENTABLE
             break
         count_before = 0
-        if law.adhesive:
+        if kernel.adhesive:
             for i in range(BLOCK):  # one by one, here and below: slices take long to compile
                 contacts[IN_CONTACT, i] = contacts[BEFORE, i] = 0.0
         for step in range(separation.size):
             h = separation[step]
             begin, end = memory.first[step], memory.first[step + 1]
-            count = count_above(z, law.lowest_in_contact(begin, end, memory, max_scales[DEPTH_SCALE]))
+            count = count_above(z, kernel.lowest_in_contact(begin, end, memory, max_scales[DEPTH_SCALE]))
             if count > 0:
                 visits += count
-                law.solve_contacts(count, block, h, adhesion_range, memory, begin, end)
+                kernel.solve_contacts(count, block, h, adhesion_range, memory, begin, end)
                 if wanted[ERROR]:
                     retracted = end - begin > 1 or memory.top[begin] > memory.bottom[begin]
-                    error = law.error_bound(count, block, h, retracted)
+                    error = kernel.error_bound(count, block, h, retracted)
                     total[ERROR, step], compensation[ERROR, step] = accumulate(
                         total[ERROR, step], compensation[ERROR, step], error
                     )
-            if law.adhesive:
+            if kernel.adhesive:
                 for i in range(count, count_before):
                     contacts[IN_CONTACT, i] = 0.0  # too low
-                if law.energetic and wanted[DISSIPATED]:
-                    dissipated = law.jumps(max(count, count_before), block)
+                if kernel.energetic and wanted[DISSIPATED]:
+                    dissipated = kernel.jumps(max(count, count_before), block)
                     total[DISSIPATED, step], compensation[DISSIPATED, step] = accumulate(
                         total[DISSIPATED, step], compensation[DISSIPATED, step], dissipated
                     )
                 count_before = count
             if step == turn:
                 for i in range(count):
-                    if not law.adhesive or contacts[IN_CONTACT, i] > 0.0:
-                        totals.closest[0, start + i] = scales[RADIUS_SCALE, i] * law.radius_at(contacts, params, i)
-                        totals.closest[1, start + i] = scales[FORCE_SCALE, i] * law.force_at(contacts, params, i)
+                    if not kernel.adhesive or contacts[IN_CONTACT, i] > 0.0:
+                        totals.closest[0, start + i] = scales[RADIUS_SCALE, i] * kernel.radius_at(contacts, params, i)
+                        totals.closest[1, start + i] = scales[FORCE_SCALE, i] * kernel.force_at(contacts, params, i)
             if count > 0:
-                law.add_totals(count, block, step, totals)
+                kernel.add_totals(count, block, step, totals)
     return visits
 
 

@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from roughmdr.aggregate.block import DEPTH_SCALE, FORCE_SCALE, RADIUS_SCALE, SCALES, STIFFNESS_SCALE, Block, law
+from roughmdr.aggregate.block import DEPTH_SCALE, FORCE_SCALE, RADIUS_SCALE, SCALES, STIFFNESS_SCALE, Block, kernel
 from roughmdr.aggregate.far_contacts import GROUP, Far, far_response, nothing_known, slot_for
 from roughmdr.aggregate.loop import count_above
 from roughmdr.kernels.blocks import CONTACT_ROWS, IN_CONTACT, STIFFNESS, TERM
@@ -105,7 +105,7 @@ def block_at(asperities: Asperities, number: int) -> Block:
     shared = asperities.params.shape[0] < asperities.height.size
     if number >= asperities.ready[0] and not (shared and number > 0):
         begin, end = (0, 1) if shared else (start, stop)
-        found = law.prepare(asperities.material, asperities.columns, begin, end, 0.0, math.inf).reshape(-1)
+        found = kernel.prepare(asperities.material, asperities.columns, begin, end, 0.0, math.inf).reshape(-1)
         kept = asperities.params[begin:end].reshape(-1)  # one by one, here and below: slices take seconds to compile
         for i in range(kept.size):
             kept[i] = found[i]
@@ -117,7 +117,7 @@ def block_at(asperities: Asperities, number: int) -> Block:
         asperities.contacts,
     )
     if number >= asperities.ready[0]:
-        representable = law.natural_scales(block, asperities.columns, start, asperities.material)
+        representable = kernel.natural_scales(block, asperities.columns, start, asperities.material)
         asperities.ready[0] = number + 1 if representable else -1
     return block
 
@@ -132,8 +132,8 @@ def response(h: float, falls: bool, asperities: Asperities, memory: Memory) -> R
     now, reach = Staircase(memory.first, memory.bottom_now, memory.top_now), asperities.adhesion_range
     for j in range(count_of_pairs):
         now.bottom[j], now.top[j] = memory.bottom[j] - reach, max(memory.top[j], h)
-    if falls or not law.adhesive:
-        now.bottom[count_of_pairs] = h - reach if law.adhesive else np.nextafter(h, math.inf)
+    if falls or not kernel.adhesive:
+        now.bottom[count_of_pairs] = h - reach if kernel.adhesive else np.nextafter(h, math.inf)
         now.top[count_of_pairs] = h
         count_of_pairs += 1
     lowest = now.bottom[0]
@@ -144,7 +144,7 @@ def response(h: float, falls: bool, asperities: Asperities, memory: Memory) -> R
     if begin > 0:
         total[0], total[1] = far_response(h, far)
         total[2] = total[1]
-    elif law.hardening:
+    elif kernel.hardening:
         slot = slot_for(h, far)
     groups = asperities.in_contact.shape[0]
     for number in range(begin, groups):
@@ -154,26 +154,26 @@ def response(h: float, falls: bool, asperities: Asperities, memory: Memory) -> R
         if asperities.height[number * GROUP] < lowest:
             groups = number
             break
-        block = law.block_at(asperities, number)
+        block = kernel.block_at(asperities, number)
         if asperities.ready[0] < 0:
             return Response(math.nan, math.nan, math.nan)
         deepest = block.max_scales[DEPTH_SCALE]
-        count = count_above(block.z, law.lowest_in_contact(0, count_of_pairs, now, deepest))
-        if law.adhesive:
+        count = count_above(block.z, kernel.lowest_in_contact(0, count_of_pairs, now, deepest))
+        if kernel.adhesive:
             for i in range(GROUP):
                 asperities.contacts[IN_CONTACT, i] = asperities.in_contact[number, i] if i < count else 0.0
         if count > 0:
             asperities.ready[1] += count
-            law.solve_contacts(count, block, h, reach, now, 0, count_of_pairs)
-            law.add_response(count, block, asperities.material.effective_modulus, total, compensation)
-        if law.adhesive:
+            kernel.solve_contacts(count, block, h, reach, now, 0, count_of_pairs)
+            kernel.add_response(count, block, asperities.material.effective_modulus, total, compensation)
+        if kernel.adhesive:
             for i in range(GROUP):
                 asperities.tried[number, i] = asperities.contacts[IN_CONTACT, i]
     if slot >= 0:
         far.force[slot, groups:] = total[0] + compensation[0]
         far.stiffness[slot, groups:] = total[1] + compensation[1]
     force, stiffness = total[0] + compensation[0], total[1] + compensation[1]
-    return Response(force, stiffness, total[2] + compensation[2] if law.adhesive else stiffness)
+    return Response(force, stiffness, total[2] + compensation[2] if kernel.adhesive else stiffness)
 
 
 def add_response(count: int, block: Block, modulus: float, total: Floats, compensation: Floats) -> None:
@@ -184,22 +184,22 @@ def add_response(count: int, block: Block, modulus: float, total: Floats, compen
     """
     params, scales, contacts = block.params, block.scales, block.contacts
     terms = contacts[TERM]
-    for row in range(3 if law.adhesive else 2):
+    for row in range(3 if kernel.adhesive else 2):
         if row == 0:
             for i in range(count):
-                force = scales[FORCE_SCALE, i] * law.force_at(contacts, params, i)
-                terms[i] = force if not law.adhesive or contacts[IN_CONTACT, i] > 0.0 else 0.0
+                force = scales[FORCE_SCALE, i] * kernel.force_at(contacts, params, i)
+                terms[i] = force if not kernel.adhesive or contacts[IN_CONTACT, i] > 0.0 else 0.0
         elif row == 1:
             for i in range(count):
-                k = scales[STIFFNESS_SCALE, i] * law.stiffness_at(contacts, params, i)
-                terms[i] = k if not law.adhesive or contacts[IN_CONTACT, i] > 0.0 else 0.0
+                k = scales[STIFFNESS_SCALE, i] * kernel.stiffness_at(contacts, params, i)
+                terms[i] = k if not kernel.adhesive or contacts[IN_CONTACT, i] > 0.0 else 0.0
                 contacts[STIFFNESS, i] = terms[i] if terms[i] > 0.0 else 0.0
-        elif law.hardening:
+        elif kernel.hardening:
             for i in range(count):
                 terms[i] = contacts[STIFFNESS, i]
         else:
             for i in range(count):
-                k = 2.0 * modulus * (scales[RADIUS_SCALE, i] * law.radius_at(contacts, params, i))
+                k = 2.0 * modulus * (scales[RADIUS_SCALE, i] * kernel.radius_at(contacts, params, i))
                 terms[i] = k if contacts[IN_CONTACT, i] > 0.0 else 0.0
         total[row], compensation[row] = accumulate(total[row], compensation[row], sum_by_halves(terms, count, GROUP))
 

@@ -11,7 +11,7 @@ from roughmdr.aggregate.block import (
     SCALES,
     STIFFNESS_SCALE,
     Block,
-    law,
+    kernel,
 )
 from roughmdr.kernels.interface import Columns, Material
 
@@ -27,18 +27,18 @@ def natural_scales(block: Block, columns: Columns, start: int, material: Materia
     count = block.z.size
     width, rise = columns.width, columns.rise
     for i in range(count):  # nothing but this, so that it becomes vector code
-        (depth, _), size, load, rigidity = law.scales(
-            material.effective_modulus, material.work, width[start + i], rise[start + i], law.params_of(params, i)
+        (depth, _), size, load, rigidity = kernel.scales(
+            material.effective_modulus, material.work, width[start + i], rise[start + i], kernel.params_of(params, i)
         )
         scales[DEPTH_SCALE, i] = depth
         scales[PER_DEPTH, i] = 1.0 / depth if depth > 0.0 else np.inf
         scales[RADIUS_SCALE, i] = size
         scales[FORCE_SCALE, i] = load
         scales[STIFFNESS_SCALE, i] = rigidity
-    if law.energetic:
+    if kernel.energetic:
         for i in range(count):
             scales[ENERGY_SCALE, i] = scales[FORCE_SCALE, i] * scales[DEPTH_SCALE, i]
-    unrepresentable, rows = 0, SCALES if law.energetic else ENERGY_SCALE
+    unrepresentable, rows = 0, SCALES if kernel.energetic else ENERGY_SCALE
     for row in range(rows):
         max_scales[row] = 0.0
     for i in range(count):

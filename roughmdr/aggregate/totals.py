@@ -2,7 +2,7 @@
 
 import math
 
-from roughmdr.aggregate.block import ENERGY_SCALE, FORCE_SCALE, RADIUS_SCALE, STIFFNESS_SCALE, Block, Totals, law
+from roughmdr.aggregate.block import ENERGY_SCALE, FORCE_SCALE, RADIUS_SCALE, STIFFNESS_SCALE, Block, Totals, kernel
 from roughmdr.kernels.blocks import BEFORE, IN_CONTACT, STATE, TERM
 from roughmdr.kernels.profile.layout import BRANCHED
 from roughmdr.numerics.summation import BLOCK, accumulate, sum_by_halves
@@ -42,31 +42,31 @@ def add_totals(count: int, block: Block, step: int, totals: Totals) -> None:
             continue
         if row == FORCE:
             for i in range(count):
-                force = scales[FORCE_SCALE, i] * law.force_at(contacts, params, i)
-                terms[i] = force if not law.adhesive or contacts[IN_CONTACT, i] > 0.0 else 0.0
+                force = scales[FORCE_SCALE, i] * kernel.force_at(contacts, params, i)
+                terms[i] = force if not kernel.adhesive or contacts[IN_CONTACT, i] > 0.0 else 0.0
         elif row == RADIUS:
             for i in range(count):
-                a = scales[RADIUS_SCALE, i] * law.radius_at(contacts, params, i)
-                terms[i] = a if not law.adhesive or contacts[IN_CONTACT, i] > 0.0 else 0.0
+                a = scales[RADIUS_SCALE, i] * kernel.radius_at(contacts, params, i)
+                terms[i] = a if not kernel.adhesive or contacts[IN_CONTACT, i] > 0.0 else 0.0
         elif row == AREA:
             for i in range(count):
-                a = scales[RADIUS_SCALE, i] * law.radius_at(contacts, params, i)
-                terms[i] = math.pi * (a * a) if not law.adhesive or contacts[IN_CONTACT, i] > 0.0 else 0.0
+                a = scales[RADIUS_SCALE, i] * kernel.radius_at(contacts, params, i)
+                terms[i] = math.pi * (a * a) if not kernel.adhesive or contacts[IN_CONTACT, i] > 0.0 else 0.0
         elif row == STIFFNESS:
             for i in range(count):
-                k = scales[STIFFNESS_SCALE, i] * law.stiffness_at(contacts, params, i)
-                terms[i] = k if not law.adhesive or contacts[IN_CONTACT, i] > 0.0 else 0.0
-        elif row == COUNT and not law.adhesive:
+                k = scales[STIFFNESS_SCALE, i] * kernel.stiffness_at(contacts, params, i)
+                terms[i] = k if not kernel.adhesive or contacts[IN_CONTACT, i] > 0.0 else 0.0
+        elif row == COUNT and not kernel.adhesive:
             for i in range(count):
                 terms[i] = 1.0
         elif row == COUNT:
             for i in range(count):
-                touching = not law.cohesive or law.radius_at(contacts, params, i) > 0.0
+                touching = not kernel.cohesive or kernel.radius_at(contacts, params, i) > 0.0
                 terms[i] = 1.0 if touching and contacts[IN_CONTACT, i] > 0.0 else 0.0
-        elif law.energetic and row == ENERGY:
+        elif kernel.energetic and row == ENERGY:
             for i in range(count):
-                energy = scales[ENERGY_SCALE, i] * law.energy(contacts[STATE, i], law.params_of(params, i))
-                terms[i] = energy if not law.adhesive or contacts[IN_CONTACT, i] > 0.0 else 0.0
+                energy = scales[ENERGY_SCALE, i] * kernel.energy(contacts[STATE, i], kernel.params_of(params, i))
+                terms[i] = energy if not kernel.adhesive or contacts[IN_CONTACT, i] > 0.0 else 0.0
         else:
             continue  # added elsewhere
         total[row, step], compensation[row, step] = accumulate(
@@ -86,8 +86,8 @@ def jumps(count: int, block: Block) -> float:
         now, before = contacts[IN_CONTACT, i], contacts[BEFORE, i]
         terms[i] = 0.0
         if now != before:
-            own, made = law.params_of(params, i), now > before
-            energy = law.energy(law.state(1.0 if made else 0.0, own), own)
+            own, made = kernel.params_of(params, i), now > before
+            energy = kernel.energy(kernel.state(1.0 if made else 0.0, own), own)
             terms[i] = scales[ENERGY_SCALE, i] * (-energy if made else energy)
         contacts[BEFORE, i] = now
     return sum_by_halves(terms, count, BLOCK)
@@ -96,8 +96,8 @@ def jumps(count: int, block: Block) -> float:
 def jumps_of_either(count: int, block: Block) -> float:
     """Return as ``jumps_between_branches`` or as ``jumps``, as the rows tell."""
     if block.params[0, BRANCHED] > 0.0:
-        return float(law.jumps_between_branches(count, block))
-    return float(law.jumps_of_one(count, block))
+        return float(kernel.jumps_between_branches(count, block))
+    return float(kernel.jumps_of_one(count, block))
 
 
 def jumps_between_branches(count: int, block: Block) -> float:
@@ -106,7 +106,7 @@ def jumps_between_branches(count: int, block: Block) -> float:
     terms = contacts[TERM]
     for i in range(count):
         now, before = contacts[IN_CONTACT, i], contacts[BEFORE, i]
-        lost = law.jump_energy(before, now, law.params_of(params, i)) if now != before else 0.0
+        lost = kernel.jump_energy(before, now, kernel.params_of(params, i)) if now != before else 0.0
         terms[i] = scales[ENERGY_SCALE, i] * lost
         contacts[BEFORE, i] = now
     return sum_by_halves(terms, count, BLOCK)

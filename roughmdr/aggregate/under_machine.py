@@ -53,8 +53,8 @@ def separations_of(
         release = height + problem.depths(adhesion)
         touches, releases = np.sort(height + adhesion.range), np.sort(release)
     asperities = response.keep(height, columns, material, adhesion.range, release, kernels.prepare)
-    law = _compiled(kernels)
-    law.block_at(asperities, 0)  # its depths are the scale of first steps
+    compiled = _compiled(kernels)
+    compiled.block_at(asperities, 0)  # its depths are the scale of first steps
     first_touch = float(height[0] + adhesion.range)
     top = max(float(releases[-1]) if releases.size else first_touch, first_touch)
     beside = _BESIDE * float(np.spacing(max(abs(top), abs(float(height[-1])))))
@@ -68,7 +68,7 @@ def separations_of(
             turns.append(h)
         events = releases if leg.rises else touches
         memory = _memory(turns if kernels.adhesive else [])
-        look = as_argument(law.response, h, True, asperities, memory)
+        look = as_argument(compiled.response, h, True, asperities, memory)
         place = first_touch, top, beside
         search = machine_stand.Search(look, not leg.rises, machine, asperities, memory, events, *place)
         asperities.far.number[:] = 0

@@ -21,9 +21,9 @@ class Branch(NamedTuple):
 
 def branches_of(contact: Contact) -> list[Branch]:
     """Return the branches that are stable under fixed grips, outwards."""
-    law, params = contact.law, contact.params
-    if not law.iterative or contact.shape.pinned:
-        return [Branch(float(law.state(0.0, params)), math.inf)]
+    kernels, params = contact.kernels, contact.params
+    if not kernels.iterative or contact.shape.pinned:
+        return [Branch(float(kernels.state(0.0, params)), math.inf)]
     return [Branch(float(params[FOOT + j]), float(params[TOP + j])) for j in range(int(params[COUNT]))]
 
 
@@ -32,36 +32,36 @@ def approached(contact: Contact) -> list[Branch]:
 
     They jump from the top of one to the next.
     """
-    law, params, all_branches = contact.law, contact.params, branches_of(contact)
+    kernels, params, all_branches = contact.kernels, contact.params, branches_of(contact)
     x = float(contact.reduced(np.array([contact.onset]), contact.depth)[0])
-    if not law.branched:
-        return [Branch(float(law.state(x, params)), math.inf)]
-    number = law.branch(x, 0.0, True, params)
+    if not kernels.branched:
+        return [Branch(float(kernels.state(x, params)), math.inf)]
+    number = kernels.branch(x, 0.0, True, params)
     if number == 0.0:  # attraction begins without a jump
         parts, number = [all_branches[0]], 1.0
     else:
-        parts = [Branch(float(law.state_on_branch(x, number, params)), all_branches[int(number) - 1].top)]
+        parts = [Branch(float(kernels.state_on_branch(x, number, params)), all_branches[int(number) - 1].top)]
     while int(number) < len(all_branches):
         x = float(params[TOP_X + int(number) - 1])
-        number = law.branch(math.nextafter(x, math.inf), number, True, params)
-        parts.append(Branch(float(law.state_on_branch(x, number, params)), all_branches[int(number) - 1].top))
+        number = kernels.branch(math.nextafter(x, math.inf), number, True, params)
+        parts.append(Branch(float(kernels.state_on_branch(x, number, params)), all_branches[int(number) - 1].top))
     return parts
 
 
 def at_indentation(contact: Contact, delta: Floats) -> Results:
     """Return the contact as on approach to each indentation [m]; zeros where the surfaces do not attract yet."""
-    law, params = contact.law, contact.params
-    if not law.adhesive:
+    kernels, params = contact.kernels, contact.params
+    if not kernels.adhesive:
         return contact.at_indentation(delta)
     near = delta >= contact.onset
-    if not law.branched:
+    if not kernels.branched:
         found = contact.at_indentation(np.where(near, delta, 0.0))
         return {name: np.where(near, numbers, 0.0) for name, numbers in found.items()}
     distances = contact.reduced(np.where(near, delta, 0.0), contact.depth).tolist()
-    numbers = [law.branch(x, 0.0, True, params) for x in distances]
+    numbers = [kernels.branch(x, 0.0, True, params) for x in distances]
     first = branches_of(contact)[0].foot
     states = [
-        law.state_on_branch(x, number, params) if number > 0.0 else first
+        kernels.state_on_branch(x, number, params) if number > 0.0 else first
         for x, number in zip(distances, numbers, strict=True)
     ]
     results = contact.at_states(near & (np.array(numbers) > 0.0), np.array(states, dtype=np.float64))

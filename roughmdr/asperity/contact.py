@@ -24,7 +24,7 @@ FIXED_GRIPS, DEAD_LOAD = 0.0, 1.0
 class Contact(NamedTuple):
     """The kernels of one asperity, with its parameters and natural scales."""
 
-    law: Kernels
+    kernels: Kernels
     shape: Shape
     effective_modulus: float
     adhesion: Adhesion
@@ -53,9 +53,9 @@ class Contact(NamedTuple):
         if not isinstance(shape, Shape):
             raise ShapeError(f"shape is {shape!r}; it must be a shape such as Paraboloid(radius=1e-6)")
         width, rise, params = shape.nondimensional()
-        law = choose(shape.name, adhesion, np.array([params]))
+        kernels = choose(shape.name, adhesion, np.array([params]))
         with np.errstate(all="ignore"):  # what overflows is refused below
-            params = prepared(law, shape, effective_modulus, adhesion, FIXED_GRIPS)
+            params = prepared(kernels, shape, effective_modulus, adhesion, FIXED_GRIPS)
             if (shape.pinned or shape.limit < adhesion.range) and adhesion.cohesive and params[COUNT] == 0.0:
                 reason = (
                     f"is so long that a contact of {shape} is lost in its roundings"
@@ -64,8 +64,8 @@ class Contact(NamedTuple):
                 )
                 strength = f"strength is {adhesion.strength:g} Pa: its range, {adhesion.range:g} m"
                 raise OutOfRange(f"{strength}, {reason}; it must be larger")
-            scales = law.scales(effective_modulus, adhesion.work, width, rise, params)
-            contact = cls(law, shape, effective_modulus, adhesion, params, *scales)
+            scales = kernels.scales(effective_modulus, adhesion.work, width, rise, params)
+            contact = cls(kernels, shape, effective_modulus, adhesion, params, *scales)
         depth, radius, force, stiffness = scales
         contact._check(indentation=depth[0], contact_radius=radius, force=force, stiffness=stiffness)
         return contact
@@ -76,14 +76,14 @@ class Contact(NamedTuple):
         """
         width, rise, _ = self.shape.nondimensional()
         with np.errstate(all="ignore"):
-            params = prepared(self.law, self.shape, self.effective_modulus, self.adhesion, DEAD_LOAD)
-            force, radius = self.law.force_scales(self.effective_modulus, self.adhesion.work, width, rise, params)
+            params = prepared(self.kernels, self.shape, self.effective_modulus, self.adhesion, DEAD_LOAD)
+            force, radius = self.kernels.force_scales(self.effective_modulus, self.adhesion.work, width, rise, params)
         self._check(force=force[0], contact_radius=radius)
         return self._exact(force, params), radius, params
 
     def _exact(self, depth: tuple[float, float], params: Any) -> tuple[float, float]:
         """Return a natural depth or force with the digits that the fold needs."""
-        if not (self.law.adhesive and self.law.iterative) or self.adhesion.cohesive:
+        if not (self.kernels.adhesive and self.kernels.iterative) or self.adhesion.cohesive:
             return depth
         return exact_depth(cast(ProfileShape, self.shape), self.effective_modulus, self.adhesion.work, params)
 
@@ -100,7 +100,7 @@ class Contact(NamedTuple):
 
         The float that is nearest to the fold stands for the fold itself.
         """
-        if not self.law.adhesive:
+        if not self.kernels.adhesive:
             return np.asarray(value / scale[0])
         distance = ((value + scale[0]) + scale[1]) / scale[0]
         return np.where(value == -scale[0], 0.0, distance).clip(min=0.0)
@@ -114,36 +114,36 @@ class Contact(NamedTuple):
 
     def at_indentation(self, delta: Floats) -> Results:
         """Return the contact as on retraction; zeros where there is none."""
-        law = self.law
-        detachment = -self.depth[0] if law.adhesive else 0.0
-        in_contact = (delta >= detachment) if law.adhesive else (delta > 0.0)
-        state = apply(law.state, np.where(in_contact, self.reduced(delta, self.depth), 1.0), self.params)
+        kernels = self.kernels
+        detachment = -self.depth[0] if kernels.adhesive else 0.0
+        in_contact = (delta >= detachment) if kernels.adhesive else (delta > 0.0)
+        state = apply(kernels.state, np.where(in_contact, self.reduced(delta, self.depth), 1.0), self.params)
         one_step_above = self.reduced(np.nextafter(detachment, math.inf) * np.ones(1), self.depth)
-        beside_fold = np.where(delta == detachment, apply(law.state, one_step_above, self.params), state)
+        beside_fold = np.where(delta == detachment, apply(kernels.state, one_step_above, self.params), state)
         radius, force, _ = self.radius_force_stiffness(state)
         stiffness = self.radius_force_stiffness(beside_fold)[2]
         return self._results(in_contact, state, force=force, contact_radius=radius, stiffness=stiffness)
 
     def at_force(self, force: Floats) -> Results:
         """Return the contact on the branch that is stable under dead load; OutOfRange where there is none."""
-        law = self.law
+        kernels = self.kernels
         scale, scale_radius, params = self._under_load()
-        lowest = -scale[0] if law.adhesive else 0.0
+        lowest = -scale[0] if kernels.adhesive else 0.0
         if (force < lowest).any():
             raise OutOfRange(f"force is {float(force.min())!r} N; it must be at least the pull-off force, {lowest!r} N")
-        in_contact = (force >= lowest) if law.adhesive else (force > 0.0)
+        in_contact = (force >= lowest) if kernels.adhesive else (force > 0.0)
         distance = np.where(in_contact, self.reduced(force, scale), 1.0)
-        state = apply(law.state_of_force, distance, params)
+        state = apply(kernels.state_of_force, distance, params)
         radius, _, stiffness = self.radius_force_stiffness(state)
-        if law.radius_of_force is not None:
-            radius = scale_radius * apply(law.radius_of_force, distance, params)
+        if kernels.radius_of_force is not None:
+            radius = scale_radius * apply(kernels.radius_of_force, distance, params)
         delta = self.indentation_of(state)
         results = self._results(in_contact, state, indentation=delta, contact_radius=radius, stiffness=stiffness)
         return {**results, "force": force}
 
     def at_radius(self, radius: Floats) -> Results:
         """Return the equilibrium with each radius, stable or not; zeros where it is 0."""
-        law, shape = self.law, self.shape
+        kernels, shape = self.kernels, self.shape
         if (radius < 0.0).any():
             raise OutOfRange(f"contact_radius is {float(radius.min()):g} m; it must be at least 0")
         if shape.pinned:
@@ -163,15 +163,15 @@ class Contact(NamedTuple):
         in_contact = radius > 0.0
         a = np.where(in_contact, radius, self.radius)
         if self.adhesion.cohesive:
-            delta, force, stiffness = apply_all(law.equilibrium_at_radius, a, self.radius, self.params)
-            c = apply(law.cohesive_at_radius, a, self.radius, self.params)
+            delta, force, stiffness = apply_all(kernels.equilibrium_at_radius, a, self.radius, self.params)
+            c = apply(kernels.cohesive_at_radius, a, self.radius, self.params)
             rise = float(shape.nondimensional()[1])
             results = {"indentation": rise * delta, "force": self.force * force, "cohesive_radius": self.radius * c}
             return results | {"stiffness": self.stiffness * stiffness}
-        state = apply(law.state_of_radius, a, self.radius, self.params)
+        state = apply(kernels.state_of_radius, a, self.radius, self.params)
         beside_fold = state
-        if law.adhesive and not law.iterative:  # other folds lie between the floats
-            above = apply(law.state_of_radius, np.nextafter(a, math.inf), self.radius, self.params)
+        if kernels.adhesive and not kernels.iterative:  # other folds lie between the floats
+            above = apply(kernels.state_of_radius, np.nextafter(a, math.inf), self.radius, self.params)
             beside_fold = np.where(state == 0.0, above, state)
         force, stiffness = self.radius_force_stiffness(state)[1], self.radius_force_stiffness(beside_fold)[2]
         delta = self.indentation_of(state)
@@ -179,16 +179,16 @@ class Contact(NamedTuple):
 
     def radius_force_stiffness(self, state: Floats) -> tuple[Floats, Floats, Floats]:
         """Return contact radius [m], force [N] and stiffness [N/m] of each state."""
-        law, params = self.law, self.params
+        kernels, params = self.kernels, self.params
         with np.errstate(divide="ignore"):  # at a fold the stiffness is without bound; compiled kernels do not warn
-            parts = apply_all(law.radius_force_stiffness, state, params)
+            parts = apply_all(kernels.radius_force_stiffness, state, params)
         return self.radius * parts[0], self.force * parts[1], self.stiffness * parts[2]
 
     def at_states(self, in_contact: NDArray[np.bool_], state: Floats) -> Results:
         """Return all quantities of the equilibrium at each state; zeros out of contact."""
         radius, force, stiffness = self.radius_force_stiffness(state)
         delta = self.indentation_of(state)
-        if self.law.adhesive:  # a rounding below detachment there would be no contact
+        if self.kernels.adhesive:  # a rounding below detachment there would be no contact
             delta = np.maximum(delta, -self.depth[0])
         return self._results(
             in_contact, state, indentation=delta, force=force, contact_radius=radius, stiffness=stiffness
@@ -196,21 +196,21 @@ class Contact(NamedTuple):
 
     def _results(self, in_contact: NDArray[np.bool_], state: Floats, **results: Floats) -> Results:
         """Return results, with the cohesive radius [m] where adhesion has a range; zeros out of contact."""
-        if self.law.cohesive:
-            results["cohesive_radius"] = self.radius * apply(self.law.cohesive_radius, state, self.params)
+        if self.kernels.cohesive:
+            results["cohesive_radius"] = self.radius * apply(self.kernels.cohesive_radius, state, self.params)
         return {name: np.where(in_contact, numbers, 0.0) for name, numbers in results.items()}
 
     def indentation_of(self, state: Floats) -> Floats:
         """Return the indentation [m] of each state."""
-        distance = apply(self.law.reduced_control, state, self.params)
-        return self.depth[0] * (distance - 1.0) - self.depth[1] if self.law.adhesive else self.depth[0] * distance
+        distance = apply(self.kernels.reduced_control, state, self.params)
+        return self.depth[0] * (distance - 1.0) - self.depth[1] if self.kernels.adhesive else self.depth[0] * distance
 
 
-def prepared(law: Kernels, shape: Shape, effective_modulus: float, adhesion: Adhesion, control: float) -> Any:
+def prepared(kernels: Kernels, shape: Shape, effective_modulus: float, adhesion: Adhesion, control: float) -> Any:
     """Return the params of one contact under a control."""
     width, rise, params = (np.asarray(part, dtype=np.float64)[None] for part in shape.nondimensional())
-    material = law.material(effective_modulus, adhesion)
-    return law.params_of(law.prepare(material, Columns(width, rise, params), 0, 1, control, math.inf), 0)
+    material = kernels.material(effective_modulus, adhesion)
+    return kernels.params_of(kernels.prepare(material, Columns(width, rise, params), 0, 1, control, math.inf), 0)
 
 
 def exact_depth(shape: ProfileShape, effective_modulus: float, work: float, params: Floats) -> Pair:

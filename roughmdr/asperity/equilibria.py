@@ -93,18 +93,18 @@ def equilibria(
 
 def _stable(contact: Contact, delta: float) -> Iterator[Equilibrium]:
     """Yield the equilibrium on each branch that is stable under fixed grips at delta."""
-    law = contact.law
-    onset = -contact.depth[0] if law.adhesive else 0.0
-    if delta < onset or (delta == 0.0 and not law.adhesive):
+    kernels = contact.kernels
+    onset = -contact.depth[0] if kernels.adhesive else 0.0
+    if delta < onset or (delta == 0.0 and not kernels.adhesive):
         return
-    if law.cohesive and onset == contact.onset == delta:  # where attraction begins, without a jump
+    if kernels.cohesive and onset == contact.onset == delta:  # where attraction begins, without a jump
         return
-    if not (law.branched and delta > onset):
+    if not (kernels.branched and delta > onset):
         yield Equilibrium.from_results(contact.at_indentation(np.array([delta])), stable=True)
         return
     x = float(contact.reduced(np.array([delta]), contact.depth)[0])
     for number in range(1, int(contact.params[COUNT]) + 1):
         # The branch extends to delta if a contact that is put on it stays on it.
-        if law.branch(x, float(number), True, contact.params) == number:
-            state = law.state_on_branch(x, float(number), contact.params)
+        if kernels.branch(x, float(number), True, contact.params) == number:
+            state = kernels.state_on_branch(x, float(number), contact.params)
             yield Equilibrium.from_results(contact.at_states(np.array([True]), np.array([state])), stable=True)

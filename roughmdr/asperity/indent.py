@@ -165,7 +165,7 @@ def _solver(
         if control == "remote":
             held = OnMachine.on_spring(contact, machine_stiffness)
             return held.on_approach if approach else held.on_retraction
-        if approach and contact.law.adhesive:
+        if approach and contact.kernels.adhesive:
             return partial(approach_at_indentation if control == "indentation" else approach_at_force, contact)
     at = {"indentation": contact.at_indentation, "force": contact.at_force, "contact_radius": contact.at_radius}
     return at[control]

@@ -68,13 +68,13 @@ class OnMachine(NamedTuple):
         part = np.full(values.shape, -1)
         for i, each in enumerate(parts):
             part[values >= each.low] = i
-        if not self.contact.law.adhesive:
+        if not self.contact.kernels.adhesive:
             part[values <= 0.0] = -1
         return self._results(values, part, parts)
 
     def on_approach(self, values: Floats) -> Results:
         """Return the contact as on slow approach from afar to each value of the control; out of contact before it."""
-        if not self.contact.law.adhesive:
+        if not self.contact.kernels.adhesive:
             return self.on_retraction(values)
         parts = self._parts(approached(self.contact))
         part = np.full(values.shape, -1)

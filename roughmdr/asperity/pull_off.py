@@ -95,7 +95,7 @@ def pull_off(
     contact = Contact.of(shape, effective_modulus, asked)
     names = ["force", "indentation", "contact_radius"]
     names += ["cohesive_radius"] * (asked.model == "dugdale") + ["remote"] * (control == "remote")
-    if not contact.law.adhesive:
+    if not contact.kernels.adhesive:
         return _at_pull_off({name: np.zeros(()) for name in names}, control, {})
     with np.errstate(all="ignore"):
         held = OnMachine.on_spring(contact, stiffness) if control == "remote" else None

@@ -32,7 +32,7 @@ def stable_parts(contact: Contact, machine: Machine, branch: Branch) -> list[Bra
 
     OutOfRange where the branch under dead load is not representable.
     """
-    if contact.shape.pinned or not contact.law.adhesive:
+    if contact.shape.pinned or not contact.kernels.adhesive:
         return [branch]
     foot, top = branch
     end = top - foot if top < math.inf else _BEYOND * (_last_under_load(contact) - foot)
@@ -63,10 +63,10 @@ def stable_parts(contact: Contact, machine: Machine, branch: Branch) -> list[Bra
 
 def _last_under_load(contact: Contact) -> float:
     """Return the state beyond which k > 0 for good."""
-    law = contact.law
-    if not law.iterative:
-        return float(law.state_of_force(0.0, contact.params))
-    params = prepared(law, contact.shape, contact.effective_modulus, contact.adhesion, DEAD_LOAD)
+    kernels = contact.kernels
+    if not kernels.iterative:
+        return float(kernels.state_of_force(0.0, contact.params))
+    params = prepared(kernels, contact.shape, contact.effective_modulus, contact.adhesion, DEAD_LOAD)
     if params[COUNT] == 0.0:
         raise OutOfRange(
             f"the branches under dead load are not representable: effective modulus {contact.effective_modulus:g} Pa, "
@@ -81,7 +81,7 @@ def _grid(contact: Contact, branch: Branch, end: float) -> Floats:
     points = [near, np.linspace(0.0, end, _POINTS)[1:]]
     if branch.top < math.inf:
         points = [near[near < 0.5 * end], (end - near)[near <= 0.5 * end], points[1][:-1]]
-    elif contact.law.iterative:
+    elif contact.kernels.iterative:
         marks = _marks(contact) - branch.foot
         points.append(marks[(marks > near[0]) & (marks < end)])
     return np.unique(np.concatenate(points))
@@ -94,7 +94,7 @@ def _marks(contact: Contact) -> Floats:
     breaks = [profile.breakpoint(i, params)[0] for i in range(profile.breakpoint_count(params))]
     t += [profile.t_of_radius(radius, 1.0, params) for radius in breaks if radius > 0.0]
     states = np.array(t, dtype=np.float64)
-    if not contact.law.cohesive:
+    if not contact.kernels.cohesive:
         return states
     begin = 2.0 if contact.shape.flat else 1.0
     return np.concatenate([[1.0, begin], begin + states / params[UNIT]])
@@ -127,7 +127,7 @@ def _with_extremes(grid: Floats, values: Floats, firmness: _Firmness) -> tuple[F
 
 def _is_regular(contact: Contact, branch: Branch, near: float) -> bool:
     """Return whether k is finite at the foot: at a corner, or where attraction begins without a jump."""
-    if contact.law.cohesive and branch.foot == 0.0:
+    if contact.kernels.cohesive and branch.foot == 0.0:
         return True
     with np.errstate(all="ignore"):
         at, beside = contact.radius_force_stiffness(branch.foot + np.array([0.0, near]))[2]

@@ -40,7 +40,7 @@ class Equilibrium(NamedTuple):
 def unstable(contact: Contact, delta: float) -> Iterator[Equilibrium]:
     """Yield the equilibria at delta [m] that are not stable under fixed grips."""
     if not contact.adhesion.cohesive:
-        if contact.law.adhesive:
+        if contact.kernels.adhesive:
             yield from _unstable_jkr(contact, delta)
     elif contact.shape.pinned:
         yield from _unstable_dugdale_punch(contact, delta)
@@ -76,9 +76,9 @@ def _unstable_jkr(contact: Contact, delta: float) -> Iterator[Equilibrium]:
 
 def _falling_radii(contact: Contact) -> Iterator[tuple[float, float]]:
     """Yield pairs of contact radii [m] of JKR between which the indentation falls."""
-    if contact.law.iterative:
+    if contact.kernels.iterative:
         turns = [turn for branch in branches_of(contact) for turn in branch if turn < math.inf]
-        radii = [float(contact.radius * contact.law.radius(turn, contact.params)) for turn in turns]
+        radii = [float(contact.radius * contact.kernels.radius(turn, contact.params)) for turn in turns]
     else:
         radii = contact.pull_off("displacement")["contact_radius"].tolist()
     yield from list(pairwise([radii[0] * _SMALLEST, *radii]))[::2]

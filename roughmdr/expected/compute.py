@@ -93,7 +93,7 @@ def compute(
         )
     if not np.isfinite(total).all():
         raise OutOfRange(
-            f"the contact of an asperity is not representable: {problem.law.name} with effective modulus "
+            f"the contact of an asperity is not representable: {problem.kernels.name} with effective modulus "
             f"{effective_modulus:g} Pa, {problem.adhesion}, separation down to {closest:g} m"
         )
     radii, area = _largest_radii(nodes, closest, count), source.nominal_area

@@ -107,7 +107,7 @@ def curves_to_touch(contacts: list[Contact], fractions: Floats, rows: tuple[int,
 def _curve(contact: Contact, deepest: float, width: float, rows: tuple[int, ...]) -> Curve:
     """Tabulate up to the indentation ``deepest``, for heights of this width, both over the depth."""
     feet, tops = branch_ends(contact)
-    adhesive = contact.law.adhesive
+    adhesive = contact.kernels.adhesive
     last = max(deepest + float(adhesive), feet[-1] + 1.0 if adhesive else 0.0)
     tables = []
     for branch, (foot, top) in enumerate(zip(feet, [*tops, last], strict=True), start=1):
@@ -137,7 +137,7 @@ def tabulate(
 
     ``width`` is that of the heights, over the depth. OutOfRange where the heights reach too far.
     """
-    adhesive = contact.law.adhesive
+    adhesive = contact.kernels.adhesive
     nearest = _FOLD if adhesive else math.sqrt(_NEGLIGIBLE_INDENTATION * width)
     first_edge = 1.0 if adhesive else math.sqrt(_FIRST_EDGE * width)
 
@@ -162,7 +162,7 @@ def tabulate(
 def branch_ends(contact: Contact) -> tuple[list[float], list[float]]:
     """Return x where each stable branch begins, and where each but the last ends."""
     params = contact.params
-    if not contact.law.branched or params.size < -layout.TOP_X:  # those of a punch hold one branch only
+    if not contact.kernels.branched or params.size < -layout.TOP_X:  # those of a punch hold one branch only
         return [0.0], []
     count = int(params[layout.COUNT])
     feet = np.maximum(params[layout.FOOT_X : layout.FOOT_X + count], 0.0).tolist()
@@ -171,7 +171,7 @@ def branch_ends(contact: Contact) -> tuple[list[float], list[float]]:
 
 def quantities_at(contact: Contact, x: Floats, branch: int, rows: tuple[int, ...]) -> Floats:
     """Return the quantities over their natural scales at distances x to the onset, on a branch: [row, x]."""
-    kernels, params = contact.law, contact.params
+    kernels, params = contact.kernels, contact.params
     if kernels.branched:
         state = apply(kernels.state_on_branch, x, float(branch), params)
     else:
@@ -195,7 +195,7 @@ def quantities_of(contact: Contact, indentation: Floats, branch: Ints, rows: tup
     At a fold, where the stiffness is infinite, it is that beside it.
     """
     x = contact.reduced(indentation, contact.depth)
-    if STIFFNESS in rows and contact.law.adhesive:
+    if STIFFNESS in rows and contact.kernels.adhesive:
         x = np.maximum(x, _ABOVE_FOLD)
     found = np.empty((len(rows), x.size))
     for number in np.unique(branch).tolist():

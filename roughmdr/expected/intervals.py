@@ -67,7 +67,7 @@ class Intervals(NamedTuple):
 
 def has_branches(contact: Contact) -> bool:
     """Return whether summits in contact may be on several branches, or touch at a distance."""
-    return bool(contact.law.branched and (contact.adhesion.cohesive or len(branch_ends(contact)[0]) > 1))
+    return bool(contact.kernels.branched and (contact.adhesion.cohesive or len(branch_ends(contact)[0]) > 1))
 
 
 def contact_intervals(contact: Contact, path: LoadingPath) -> tuple[Intervals, Intervals]:
@@ -82,10 +82,10 @@ def _without_branches(contact: Contact, path: LoadingPath) -> tuple[Intervals, I
 
     A summit that the flat just touches is in contact only with adhesion.
     """
-    depth = contact.depth[0] if contact.law.adhesive else 0.0
+    depth = contact.depth[0] if contact.kernels.adhesive else 0.0
     memory = path.memory
     lowest = np.minimum.reduceat(np.maximum(memory.bottom, memory.top - depth), memory.first[:-1])
-    if not contact.law.adhesive:
+    if not contact.kernels.adhesive:
         lowest = np.nextafter(lowest, math.inf)
     steps = np.arange(lowest.size)
     ones = np.ones_like(steps)
@@ -113,7 +113,7 @@ def _with_branches(contact: Contact, separation: Floats) -> tuple[Intervals, Int
             z = _inside(low, high, depth)
             x = max(((z - h) + depth) / depth, 0.0)
             befores.append(branches[number])
-            afters.append(int(contact.law.branch(x, float(branches[number]), z >= h - adhesion_range, params)))
+            afters.append(int(contact.kernels.branch(x, float(branches[number]), z >= h - adhesion_range, params)))
         bounds, branches = [-math.inf], []
         for (low, high), before, after in zip(pairwise(cuts), befores, afters, strict=True):
             if before != after:
@@ -137,7 +137,7 @@ def _inside(low: float, high: float, depth: float) -> float:
 
 def jump_energies(contact: Contact, jumped: Intervals) -> Floats:
     """Return the energy over its natural scale that a contact loses in each of these jumps."""
-    kernels, params = contact.law, contact.params
+    kernels, params = contact.kernels, contact.params
     if not kernels.adhesive:
         return np.zeros(jumped.step.size)
     if kernels.branched:

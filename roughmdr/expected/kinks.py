@@ -36,7 +36,7 @@ class KinkSplit(NamedTuple):
         Nor is the rule split where it would leave out parameters that matter, or that no contact can have.
         """
         source = problem.source
-        if not problem.hysteretic or problem.law.branched or not source.one_parameter or _is_wide(source):
+        if not problem.hysteretic or problem.kernels.branched or not source.one_parameter or _is_wide(source):
             return None
         scan = Rule.between([], _SCAN_ORDER)
         try:

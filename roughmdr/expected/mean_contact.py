@@ -43,7 +43,7 @@ class MeanContact(NamedTuple):
         flat at ``closest`` [m]; OutOfRange where the heights reach too far.
         """
         own, table = heights
-        adhesive = bool(contacts[0].law.adhesive)
+        adhesive = bool(contacts[0].kernels.adhesive)
         depths = np.array([contact.depth[0] for contact in contacts])
         shallowest = contacts[int(np.argmin(depths))]  # above its fold no other contact has one
         depth = shallowest.depth[0]

@@ -41,9 +41,9 @@ class MeanProblem(NamedTuple):
         return judged
 
     @property
-    def law(self) -> Kernels:
+    def kernels(self) -> Kernels:
         """Kernels of one asperity."""
-        return contacts_of(self, self.source.nodes(Rule(np.zeros(1), np.ones(1))))[0].law
+        return contacts_of(self, self.source.nodes(Rule(np.zeros(1), np.ones(1))))[0].kernels
 
     @property
     def hysteretic(self) -> bool:
@@ -111,7 +111,7 @@ def _nodes(problem: MeanProblem, rules: tuple[Rule, ...], *, shared: bool) -> li
         own, fractions = [contacts[k] for k in alike], nodes.weights[alike]
         mean = MeanContact.of(own, fractions, (heights, heights_of[heights]), closest, rows)
         above |= dict.fromkeys(alike, mean)
-    if one_branch := [number for alike in groups.values() for number in alike if contacts[number].law.adhesive]:
+    if one_branch := [number for alike in groups.values() for number in alike if contacts[number].kernels.adhesive]:
         found = curves_to_touch([contacts[k] for k in one_branch], nodes.weights[one_branch], rows)
         curves |= dict(zip(one_branch, found, strict=True))
     each = zip(nodes.weights.tolist(), contacts, (heights_of[heights] for heights in nodes.heights), strict=True)

@@ -24,7 +24,7 @@ def pull_off_of(problem: MeanProblem, split: KinkSplit | None, chosen: Converged
     rises = unloadings(path.separation, force)
     if not ends_apart(rises, count * _fraction_in_contact(nodes, path.separation.size)):
         return PullOff()
-    if not problem.law.adhesive:
+    if not problem.kernels.adhesive:
         return WITHOUT_TENSION
 
     def totals(along: LoadingPath, rows: tuple[int, ...]) -> Floats:

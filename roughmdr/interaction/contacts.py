@@ -13,7 +13,7 @@ to its order:
 import math
 from collections.abc import Callable
 
-from roughmdr.interaction.interface import Asperities, Contacts, CoupledKernels, Slid, Terms, law
+from roughmdr.interaction.interface import Asperities, Contacts, CoupledKernels, Slid, Terms, kernel
 from roughmdr.interaction.tip_edge import edge_curvature, tipped, whole_edge
 from roughmdr.kernels.interface import Kernels
 from roughmdr.kernels.profile.interface import ProfileKernels
@@ -39,8 +39,8 @@ def cubic_integral_of_power(t: float, n: float) -> float:
 
 def terms_of_profile(t: float, params: Floats) -> Terms:
     """Return the terms of a profile."""
-    a, da, g, dg = law.mdr_profile(t, params)
-    return a, da, g, dg, law.reduced_load(t, params)
+    a, da, g, dg = kernel.mdr_profile(t, params)
+    return a, da, g, dg, kernel.reduced_load(t, params)
 
 
 def cubic_integral_of_profile(t: float, params: Floats) -> float:
@@ -50,7 +50,7 @@ def cubic_integral_of_profile(t: float, params: Floats) -> float:
         high = min(1.0 if low < 1.0 else 2.0 * low, t)
         for i in range(_NODES.size):
             z = _NODES[i]
-            a, _, _, dg = law.mdr_profile(low + (high - low) * z * z * z * z, params)
+            a, _, _, dg = kernel.mdr_profile(low + (high - low) * z * z * z * z, params)
             total += 4.0 * (high - low) * _WEIGHTS[i] * z * z * z * a * a * a * dg
         low = high
     return total
@@ -58,22 +58,22 @@ def cubic_integral_of_profile(t: float, params: Floats) -> float:
 
 def curved_state(t: float, ratio: float, params: Floats) -> float:
     """Find the state from that alone on downwards, as load and curvature add up; within the edge of a tip at once."""
-    load = law.terms(t, params)[4]
-    if law.edged:
-        within = 4.0 / 3.0 * law.edge_curvature(ratio, params)
+    load = kernel.terms(t, params)[4]
+    if kernel.edged:
+        within = 4.0 / 3.0 * kernel.edge_curvature(ratio, params)
         if load <= within:
             a = math.pow(load / within, 1.0 / 3.0) if load > 0.0 else 0.0
-            return -a if law.flat else a
-    return float(law.loaded_state(load, t, ratio, params))
+            return -a if kernel.flat else a
+    return float(kernel.loaded_state(load, t, ratio, params))
 
 
 def loaded_state(load: float, t: float, ratio: float, params: Floats) -> float:
     """Find the state by Newton's method, from one with at least the load alone on downwards."""
     added = 2.0 / 3.0 * ratio
-    while law.terms(t, params)[4] < load:
+    while kernel.terms(t, params)[4] < load:
         t *= 2.0
     for _ in range(_MAX_ITERATIONS):
-        a, da, _, dg, own = law.terms(t, params)
+        a, da, _, dg, own = kernel.terms(t, params)
         step = (own + added * a * a * a - load) / (a * (dg + 3.0 * added * a * da))
         t = max(t - step, 0.25 * t)
         if abs(step) <= _RTOL * t:
@@ -85,32 +85,32 @@ def curved_state_of_power(t: float, ratio: float, n: float) -> float:
     """Return the state in closed form for n = 2, else by Newton's method."""
     if n == 2.0:
         return t * math.pow(1.0 + ratio, -1.0 / 3.0)
-    return float(law.newton_state(t, ratio, n))
+    return float(kernel.newton_state(t, ratio, n))
 
 
 def top(t: float, tilt: float, ratio: float, params: Floats) -> float:
     """Find the radius by bisection; that of t where the profile is nowhere so steep."""
     low, high = t, max(2.0 * t, 1e-6)
     for _ in range(_DOUBLINGS):
-        a, da, _, dg, _ = law.terms(high, params)
+        a, da, _, dg, _ = kernel.terms(high, params)
         if dg / da + 2.0 * ratio * a >= tilt:
             break
         high *= 2.0
     else:
-        return law.terms(t, params)[0]
+        return kernel.terms(t, params)[0]
     for _ in range(_BISECTIONS):
         middle = 0.5 * (low + high)
-        a, da, _, dg, _ = law.terms(middle, params)
+        a, da, _, dg, _ = kernel.terms(middle, params)
         if dg / da + 2.0 * ratio * a >= tilt:
             high = middle
         else:
             low = middle
-    return law.terms(high, params)[0]
+    return kernel.terms(high, params)[0]
 
 
 def top_of_power(t: float, tilt: float, ratio: float, n: float) -> float:
     """Return the radius in closed form for n = 2, else by bisection."""
-    return 0.5 * tilt / (1.0 + ratio) if n == 2.0 else float(law.bisected_top(t, tilt, ratio, n))
+    return 0.5 * tilt / (1.0 + ratio) if n == 2.0 else float(kernel.bisected_top(t, tilt, ratio, n))
 
 
 def slid(
@@ -120,7 +120,7 @@ def slid(
     steep = tilt * size / depth
     if slope >= steep:
         return depth * (a * steep * steep / slope), 2.0 * a / slope * size / depth * size
-    top = law.top(max(t, 0.0), steep, ratio, params)
+    top = kernel.top(max(t, 0.0), steep, ratio, params)
     return depth * steep * top, size * top / tilt
 
 
@@ -129,14 +129,14 @@ def load_alone(x: Floats, asperities: Asperities, contacts: Contacts) -> None:
     depth, size, params = asperities.depth, asperities.size, asperities.params
     for i in range(x.size):
         contacts.state[i] = contacts.load[i] = contacts.growth[i] = contacts.stiffness[i] = contacts.radius[i] = 0.0
-        contacts.punch[i] = size[i] if law.pinned or law.flat else 0.0
+        contacts.punch[i] = size[i] if kernel.pinned or kernel.flat else 0.0
         if x[i] > 0.0:
-            own = law.params_of(params, i)
-            t = law.state(x[i] / depth[i], own)
-            if law.pinned:
+            own = kernel.params_of(params, i)
+            t = kernel.state(x[i] / depth[i], own)
+            if kernel.pinned:
                 a, load = 1.0, t
             else:
-                a, _, _, _, load = law.terms(t, own)
+                a, _, _, _, load = kernel.terms(t, own)
             contacts.state[i] = t
             contacts.radius[i] = contacts.punch[i] = size[i] * a
             contacts.load[i] = 2.0 / math.pi * size[i] * depth[i] * load
@@ -153,14 +153,14 @@ def respond(asperities: Asperities, field: Floats, contacts: Contacts) -> int:
     for i in range(size.size):
         curvature = 0.25 * field[3, i]
         tilt = math.hypot(field[1, i], field[2, i])
-        t, own = contacts.state[i], law.params_of(params, i)
+        t, own = contacts.state[i], kernel.params_of(params, i)
         touching = contacts.load[i] > 0.0
         a = slope = lift = moment = tilting = slide = 0.0
         ratio = 2.0 * curvature * size[i] / depth[i] * size[i]
-        if ratio <= -1.0 and not law.pinned:
+        if ratio <= -1.0 and not kernel.pinned:
             lost, ratio = lost + 1, 0.0
         if touching:
-            if law.pinned and t >= 2.0 / 3.0 * ratio:
+            if kernel.pinned and t >= 2.0 / 3.0 * ratio:
                 a = 1.0
                 lift = 2.0 / 3.0 * curvature * size[i] * size[i]
                 moment = (
@@ -168,28 +168,28 @@ def respond(asperities: Asperities, field: Floats, contacts: Contacts) -> int:
                     - 32.0 / (45.0 * math.pi) * curvature * size[i] ** 5
                 )
             else:
-                alone = t if law.pinned else law.terms(t, own)[2]
-                t = -math.pow(1.5 * t / ratio, 1.0 / 3.0) if law.pinned else law.curved_state(t, ratio, own)
-                a, da, g, dg, _ = (-t, 1.0, 0.0, 0.0, 0.0) if t <= 0.0 else law.terms(t, own)
+                alone = t if kernel.pinned else kernel.terms(t, own)[2]
+                t = -math.pow(1.5 * t / ratio, 1.0 / 3.0) if kernel.pinned else kernel.curved_state(t, ratio, own)
+                a, da, g, dg, _ = (-t, 1.0, 0.0, 0.0, 0.0) if t <= 0.0 else kernel.terms(t, own)
                 lift = depth[i] * ((g - alone) + ratio * a * a)
                 slope = dg / da + 2.0 * ratio * a
-                cubic = law.cubic_integral(t, own) if t > 0.0 else 0.0
+                cubic = kernel.cubic_integral(t, own) if t > 0.0 else 0.0
                 moment = size[i] ** 3 * depth[i] / math.pi * (4.0 / 3.0 * cubic + 8.0 / 15.0 * ratio * a**5)
             tilting = 4.0 / (3.0 * math.pi) * (size[i] * a) ** 3
             contacts.radius[i] = size[i] * a
-            contacts.punch[i] = max(size[i] * a, size[i]) if law.pinned or law.flat else size[i] * a
+            contacts.punch[i] = max(size[i] * a, size[i]) if kernel.pinned or kernel.flat else size[i] * a
         steep = tilt * size[i] / depth[i]
         load = 0.5 * math.pi * contacts.load[i] / size[i] / depth[i]
-        if law.edged and load < whole_edge(steep, law.edge_curvature(ratio, own)):
-            deeper, shift, narrower, turned = law.tipped(load, steep, ratio, own)
+        if kernel.edged and load < whole_edge(steep, kernel.edge_curvature(ratio, own)):
+            deeper, shift, narrower, turned = kernel.tipped(load, steep, ratio, own)
             lift -= depth[i] * deeper
             slide = size[i] * shift / tilt if tilt > 0.0 else 0.0
             if touching:
                 a = 1.0 / (1.0 / a + narrower)
                 contacts.radius[i], contacts.stiffness[i] = size[i] * a, 2.0 / math.pi * size[i] * a
                 tilting = turned * 4.0 / (3.0 * math.pi) * (size[i] * a) ** 3
-        elif steep > 0.0 and not law.pinned:
-            deeper, slide = law.slid(t, a, slope, tilt, ratio, depth[i], size[i], own)
+        elif steep > 0.0 and not kernel.pinned:
+            deeper, slide = kernel.slid(t, a, slope, tilt, ratio, depth[i], size[i], own)
             lift -= deeper
         contacts.lift[i], contacts.second_moment[i], contacts.tilting[i], contacts.slide[i] = (
             lift, moment, tilting, slide

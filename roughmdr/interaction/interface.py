@@ -88,5 +88,5 @@ class CoupledKernels(Kernels):
     respond: Callable[..., int]
 
 
-law = CoupledKernels("law")
+kernel = CoupledKernels("kernel")
 """Stands for the kernels in parts that ``specialise`` is given."""

@@ -12,7 +12,7 @@ The radius of the edge is 1 here, P is over 2 E* and a natural depth.
 
 import math
 
-from roughmdr.interaction.interface import Tipped, law
+from roughmdr.interaction.interface import Tipped, kernel
 from roughmdr.numerics.arguments import Floats
 from roughmdr.numerics.jit import njit
 
@@ -63,7 +63,7 @@ def held(load: float, tilt: float, k: float) -> Held:
 
 def edge_curvature(ratio: float, params: Floats) -> float:
     """Return k, that of the cap and of a surface whose curvature adds ratio a^2 to g; not below 0."""
-    cap = 0.0 if law.pinned or law.flat else law.terms(1.0, params)[2]
+    cap = 0.0 if kernel.pinned or kernel.flat else kernel.terms(1.0, params)[2]
     return max(0.5 * (cap + ratio), 0.0)
 
 
@@ -72,11 +72,11 @@ def tipped(load: float, tilt: float, ratio: float, params: Floats) -> Tipped:
 
     It slides at least as far as on the flank under that load, without which the flank would hold it at once.
     """
-    k, deeper, slide = law.edge_curvature(ratio, params), 0.0, 0.0
-    if tilt > 0.0 and not law.pinned:
-        t = law.loaded_state(whole_edge(tilt, k), 1.0, ratio, params)
-        a, da, _, dg, _ = law.terms(t, params)
-        deeper, slide = law.slid(t, a, dg / da + 2.0 * ratio * a, tilt, ratio, 1.0, 1.0, params)
+    k, deeper, slide = kernel.edge_curvature(ratio, params), 0.0, 0.0
+    if tilt > 0.0 and not kernel.pinned:
+        t = kernel.loaded_state(whole_edge(tilt, k), 1.0, ratio, params)
+        a, da, _, dg, _ = kernel.terms(t, params)
+        deeper, slide = kernel.slid(t, a, dg / da + 2.0 * ratio * a, tilt, ratio, 1.0, 1.0, params)
     radius, centre, indentation = held(load, tilt, k)
     level_radius, level_indentation = level(load, k)
     narrower, turned = 0.0, 1.0

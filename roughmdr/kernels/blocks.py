@@ -5,7 +5,7 @@
 
 from typing import Any
 
-from roughmdr.kernels.interface import law
+from roughmdr.kernels.interface import kernel
 from roughmdr.numerics.arguments import Floats
 
 # Rows of ``contacts``. Radius, force and stiffness are filled where the kernels find them together with the state.
@@ -23,8 +23,8 @@ def find_by_steps(count: int, contacts: Floats, params: Any) -> None:
     """
     state, error, x = contacts[STATE], contacts[STATE_ERROR], contacts[TERM]
     for i in range(count):
-        state[i], error[i], _ = law.approach(state[i], x[i], law.params_of(params, i))
-    law.evaluate_all(count, contacts, params)
+        state[i], error[i], _ = kernel.approach(state[i], x[i], kernel.params_of(params, i))
+    kernel.evaluate_all(count, contacts, params)
 
 
 def find_near(count: int, contacts: Floats, params: Any) -> None:
@@ -34,12 +34,14 @@ def find_near(count: int, contacts: Floats, params: Any) -> None:
     state, a, force, stiffness = contacts[STATE], contacts[RADIUS], contacts[FORCE], contacts[STIFFNESS]
     error, x = contacts[STATE_ERROR], contacts[TERM]
     for i in range(count):
-        state[i], a[i], force[i], stiffness[i], error[i] = law.contact_near(state[i], x[i], law.params_of(params, i))
+        state[i], a[i], force[i], stiffness[i], error[i] = kernel.contact_near(
+            state[i], x[i], kernel.params_of(params, i)
+        )
 
 
 def evaluate_all(count: int, contacts: Floats, params: Any) -> None:
     """Fill in a, P and k of the first ``count`` contacts."""
     for i in range(count):
-        contacts[RADIUS, i], contacts[FORCE, i], contacts[STIFFNESS, i] = law.radius_force_stiffness(
-            contacts[STATE, i], law.params_of(params, i)
+        contacts[RADIUS, i], contacts[FORCE, i], contacts[STIFFNESS, i] = kernel.radius_force_stiffness(
+            contacts[STATE, i], kernel.params_of(params, i)
         )

@@ -17,10 +17,10 @@ _NAMES = tuple(Kernels.__annotations__)
 
 def _of_module(name: str, module: ModuleType, suffix: str = "") -> Kernels:
     """Return the kernels of a module, those that end in ``suffix`` before others."""
-    law = Kernels(name)
+    kernels = Kernels(name)
     found = {name: getattr(module, name + suffix, None) or getattr(module, name, None) for name in _NAMES}
-    vars(law).update({name: kernel for name, kernel in found.items() if kernel is not None})
-    return law
+    vars(kernels).update({name: kernel for name, kernel in found.items() if kernel is not None})
+    return kernels
 
 
 @once
@@ -36,40 +36,40 @@ def _closed(shape: str, adhesive: bool) -> Kernels:
         ("power_law", True): (jkr_power, ""),
         ("flat_punch", True): (flat_punch, "_jkr"),
     }[shape, adhesive]
-    law = _of_module(f"{'jkr' if adhesive else 'elastic'}_{shape}", module, suffix)
-    law.adhesive = adhesive
-    law.alike = shape != "power_law"
-    vars(law).update(prepare=scalar.prepare, params_of=scalar.params_of, heterogeneous=scalar.heterogeneous)
-    law.hardening = not adhesive or shape != "power_law"  # of JKR power laws only those with n >= 0.768
-    law.found_together = "radius_force_stiffness" in vars(law)
-    if not law.found_together:
-        law.radius_force_stiffness = specialise(scalar.radius_force_stiffness, law)
+    kernels = _of_module(f"{'jkr' if adhesive else 'elastic'}_{shape}", module, suffix)
+    kernels.adhesive = adhesive
+    kernels.alike = shape != "power_law"
+    vars(kernels).update(prepare=scalar.prepare, params_of=scalar.params_of, heterogeneous=scalar.heterogeneous)
+    kernels.hardening = not adhesive or shape != "power_law"  # of JKR power laws only those with n >= 0.768
+    kernels.found_together = "radius_force_stiffness" in vars(kernels)
+    if not kernels.found_together:
+        kernels.radius_force_stiffness = specialise(scalar.radius_force_stiffness, kernels)
     if shape == "power_law" and not adhesive:
-        law.in_sums = law.copy("_of_x")
-        vars(law.in_sums).update(vars(_of_module("", power_of_x)), __name__=law.in_sums.name, found_together=True)
-    return law
+        kernels.in_sums = of_x = kernels.copy("_of_x")
+        vars(of_x).update(vars(_of_module("", power_of_x)), __name__=of_x.name, found_together=True)
+    return kernels
 
 
 @once
 def _of_profile(shape: type[ProfileShape], adhesive: bool) -> Kernels:
     """Return the kernels of a shape that is known by its profile."""
-    law: Kernels = build(shape, cohesive=False).copy("_jkr" if adhesive else "_elastic")
-    law.adhesive, law.branched, law.hardening = adhesive, adhesive and shape.branched(), not adhesive
-    if law.of_any is not None:
-        law.of_any = _of_any(law.of_any, adhesive)
+    kernels: Kernels = build(shape, cohesive=False).copy("_jkr" if adhesive else "_elastic")
+    kernels.adhesive, kernels.branched, kernels.hardening = adhesive, adhesive and shape.branched(), not adhesive
+    if kernels.of_any is not None:
+        kernels.of_any = _of_any(kernels.of_any, adhesive)
     if shape.similar and not adhesive:
-        law.in_sums = build(shape, cohesive=False, similar=True)
-        law.in_sums.hardening = True
-    return law
+        kernels.in_sums = build(shape, cohesive=False, similar=True)
+        kernels.in_sums.hardening = True
+    return kernels
 
 
 @once
-def _of_any(kernels: Kernels, adhesive: bool) -> Kernels:
+def _of_any(profiled: Kernels, adhesive: bool) -> Kernels:
     """Return kernels of any shape with or without adhesion."""
-    law = kernels.copy("_jkr" if adhesive else "_elastic")
-    law.adhesive = adhesive
-    law.rows_tell = adhesive
-    return law
+    kernels = profiled.copy("_jkr" if adhesive else "_elastic")
+    kernels.adhesive = adhesive
+    kernels.rows_tell = adhesive
+    return kernels
 
 
 @once
@@ -77,9 +77,10 @@ def _dugdale(shape: type[Shape]) -> Kernels:
     """Return the kernels of a shape under adhesion with a range."""
     if shape is not FlatPunch:
         return build(shape, cohesive=True)
-    law = _of_module("dugdale_flat_punch", dugdale_flat_punch)
-    law.adhesive = law.iterative = law.branched = law.cohesive = law.one_by_one = law.found_together = True
-    return law
+    kernels = _of_module("dugdale_flat_punch", dugdale_flat_punch)
+    kernels.adhesive = kernels.iterative = kernels.branched = True
+    kernels.cohesive = kernels.one_by_one = kernels.found_together = True
+    return kernels
 
 
 def choose(shape: str, adhesion: Adhesion, params: Floats) -> Kernels:

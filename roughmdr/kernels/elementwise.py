@@ -13,26 +13,26 @@ from roughmdr.numerics.jit import once, specialise
 class _Kernel(ModuleType):
     """One kernel, by the name that the loops call it."""
 
-    kernel: Callable[..., Any]
+    function: Callable[..., Any]
 
 
-law = _Kernel("law")
+kernel = _Kernel("kernel")
 
 
 def _loop(values: Floats, arguments: tuple[Any, ...], out: Floats) -> None:
     for i in range(values.size):
-        out[i] = law.kernel(values[i], *arguments)
+        out[i] = kernel.function(values[i], *arguments)
 
 
 def _loop_of_three(values: Floats, arguments: tuple[Any, ...], out: Floats) -> None:
     for i in range(values.size):
-        out[0, i], out[1, i], out[2, i] = law.kernel(values[i], *arguments)
+        out[0, i], out[1, i], out[2, i] = kernel.function(values[i], *arguments)
 
 
 @once
 def _compiled(loop: FunctionType, kernel: Callable[..., Any]) -> Callable[..., Any]:
     one = _Kernel(f"{kernel.__module__.removeprefix('roughmdr.')}_{kernel.__qualname__}".replace(".", "_"))
-    one.kernel = kernel
+    one.function = kernel
     return specialise(loop, one)
 
 

@@ -43,8 +43,8 @@ class Columns(NamedTuple):
 class Kernels(ModuleType):
     """The kernels of a shape under an adhesion model.
 
-    A module, since compiled code can hold nothing else under one name: a loop names its kernels ``law.state`` and so
-    on, and ``numerics.jit.specialise`` puts these in the place of ``law``.
+    A module, since compiled code can hold nothing else under one name: a loop names its kernels ``kernel.state`` and so
+    on, and ``numerics.jit.specialise`` puts these in the place of ``kernel``.
     """
 
     adhesive = False
@@ -184,5 +184,5 @@ class Kernels(ModuleType):
         return other
 
 
-law = Kernels("law")
+kernel = Kernels("kernel")
 """Stands for the kernels in a loop that ``specialise`` is given."""

@@ -95,31 +95,31 @@ def compiled(function: Callable[..., Any], *, small: bool = False) -> Callable[.
 
 
 class _Literals(ast.NodeTransformer):
-    """Puts the numbers of a module, ``law.name``, into a syntax tree."""
+    """Puts the numbers of a module, ``kernel.name``, into a syntax tree."""
 
-    def __init__(self, law: ModuleType) -> None:
-        self.law = law
+    def __init__(self, kernels: ModuleType) -> None:
+        self.kernels = kernels
 
     def visit_Attribute(self, node: ast.Attribute) -> ast.expr:
-        if isinstance(node.value, ast.Name) and node.value.id == "law":
-            value = getattr(self.law, node.attr, None)
+        if isinstance(node.value, ast.Name) and node.value.id == "kernel":
+            value = getattr(self.kernels, node.attr, None)
             if isinstance(value, bool | int | float):
                 return ast.copy_location(ast.Constant(value), node)
         return node
 
 
-def _with_literals(function: FunctionType, law: ModuleType) -> CodeType:
-    """Return the code of a function in which the numbers of ``law`` are literals, with its file and lines."""
+def _with_literals(function: FunctionType, kernels: ModuleType) -> CodeType:
+    """Return the code of a function in which the numbers of the kernels are literals, with its file and lines."""
     lines, first = inspect.getsourcelines(function)
-    tree = _Literals(law).visit(ast.parse("".join(lines)))
+    tree = _Literals(kernels).visit(ast.parse("".join(lines)))
     module = compile(ast.increment_lineno(tree, first - 1), function.__code__.co_filename, "exec")
     return next(code for code in module.co_consts if isinstance(code, CodeType) and code.co_name == function.__name__)
 
 
 def specialise(
-    loop: Callable[..., Any], law: ModuleType, *, inline: bool = False, small: bool = False
+    loop: Callable[..., Any], kernels: ModuleType, *, inline: bool = False, small: bool = False
 ) -> Callable[..., Any]:
-    """Return a compiled copy of ``loop`` in which the global name ``law`` stands for the given module of kernels.
+    """Return a compiled copy of ``loop`` in which the global name ``kernel`` stands for the given module of kernels.
 
     numba cannot cache a loop that gets its kernels as arguments or from a closure; a copy with globals of its own
     can be. The name of the module tells the copies of one loop apart: numba finds them in its cache by it. Numbers of
@@ -127,9 +127,9 @@ def specialise(
     """
     plain = cast(FunctionType, loop)
     with numba_parts.lock:
-        code = _with_literals(plain, law)
-    copy = FunctionType(code, {**plain.__globals__, "law": law}, loop.__name__)
-    copy.__module__, copy.__qualname__ = loop.__module__, f"{loop.__qualname__}_{law.__name__}"
+        code = _with_literals(plain, kernels)
+    copy = FunctionType(code, {**plain.__globals__, "kernel": kernels}, loop.__name__)
+    copy.__module__, copy.__qualname__ = loop.__module__, f"{loop.__qualname__}_{kernels.__name__}"
     return njit(copy, inline=inline, small=small)
 
 

@@ -17,7 +17,7 @@ class _Kernel(ModuleType):
     f_and_slope: Callable[..., tuple[float, float]]
 
 
-law = _Kernel("law")
+kernel = _Kernel("kernel")
 """Stands for the kernel of the loop, until ``specialise`` puts a profile's in its place."""
 
 
@@ -31,7 +31,7 @@ def _loop(r: Floats, width: Floats, rise: Floats, params: Floats, f: Floats, slo
         scaled = r[i] / width[k]
         product, error = two_product(scaled, width[k])
         rounding = ((r[i] - product) - error) / width[k]
-        value, steepness = law.f_and_slope(scaled, params[k])
+        value, steepness = kernel.f_and_slope(scaled, params[k])
         f[i] = rise[k] * (value + (steepness * rounding if rounding != 0.0 else 0.0))
         slope[i] = rise[k] / width[k] * steepness
 

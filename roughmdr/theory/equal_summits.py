@@ -237,7 +237,7 @@ class _Summits(NamedTuple):
         check_variable(variable)
         given = check_values("separation", separation, "m")
         h = given.ravel()
-        onset = -self.contact.depth[0] if self.contact.law.adhesive else 0.0
+        onset = -self.contact.depth[0] if self.contact.kernels.adhesive else 0.0
         lowest = h if turning is None else np.maximum(turning, h + onset)
         start = np.maximum(lowest, self.heights.edges[0])
         # Exactly 0 for summits that are about to detach.
@@ -255,9 +255,9 @@ class _Summits(NamedTuple):
         contact = self.contact
         if variable == "contact_density":
             return np.ones_like(from_onset)
-        state = apply(contact.law.state, np.maximum(from_onset.ravel() / contact.depth[0], 0.0), contact.params)
+        state = apply(contact.kernels.state, np.maximum(from_onset.ravel() / contact.depth[0], 0.0), contact.params)
         if variable == "pressure":
-            values = contact.force * apply(contact.law.force, state, contact.params) - self.attraction
+            values = contact.force * apply(contact.kernels.force, state, contact.params) - self.attraction
         else:
-            values = math.pi * (contact.radius * apply(contact.law.radius, state, contact.params)) ** 2
+            values = math.pi * (contact.radius * apply(contact.kernels.radius, state, contact.params)) ** 2
         return np.asarray(values.reshape(from_onset.shape))

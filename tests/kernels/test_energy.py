@@ -19,7 +19,7 @@ E, W, R = 4e6, 0.05, 5e-5
 
 def energy(contact: Contact, state: float) -> float:
     """U [J]."""
-    value = apply(contact.law.energy, np.array([state]), contact.params)[0]
+    value = apply(contact.kernels.energy, np.array([state]), contact.params)[0]
     return float(contact.force * contact.depth[0] * value)
 
 
@@ -42,9 +42,9 @@ def test_it_is_the_energy_of_the_springs(kind: str, adhesive: bool) -> None:
         except rm.OutOfRange:
             continue
         distance = 10.0 ** rng.uniform(-12.0, 3.0)
-        state = apply(contact.law.state, np.array([distance]), contact.params)
+        state = apply(contact.kernels.state, np.array([distance]), contact.params)
         elastic, surface = springs(
-            case.exact, mp.mpf(contact.radius) * apply(contact.law.radius, state, contact.params)[0]
+            case.exact, mp.mpf(contact.radius) * apply(contact.kernels.radius, state, contact.params)[0]
         )
         if not all(mp.mpf("1e-299") < abs(part) < mp.mpf("1e299") for part in (elastic, surface or elastic)):
             continue
@@ -58,7 +58,7 @@ def test_it_is_the_energy_of_the_springs(kind: str, adhesive: bool) -> None:
 def test_the_jumps_of_a_paraboloid(unit: float) -> None:
     contact = Contact.of(rm.Paraboloid(R * unit), E, Adhesion(W))
     a0 = (2.0 * math.pi * W * (R * unit) ** 2 / E) ** (1.0 / 3.0)
-    on, off = (energy(contact, apply(contact.law.state, np.array([X]), 2.0)[0]) for X in (1.0, 0.0))
+    on, off = (energy(contact, apply(contact.kernels.state, np.array([X]), 2.0)[0]) for X in (1.0, 0.0))
     assert on == pytest.approx(-0.6 * math.pi * W * a0**2, rel=1e-14)
     assert off == pytest.approx(0.4 * 4.0 ** (-4.0 / 3.0) * math.pi * W * a0**2, rel=1e-14)
     whole = (W**5 * (R * unit) ** 4 / E**2) ** (1.0 / 3.0)
@@ -74,7 +74,7 @@ def test_it_grows_by_the_work_of_the_force(shape: rm.Paraboloid, work: float) ->
     x, weights = np.polynomial.legendre.leggauss(40)
     delta = ends[0] + (ends[1] - ends[0]) * (x + 1.0) / 2.0
     force = rm.indent(shape, effective_modulus=E, work=work, indentation=delta).force.to_numpy()
-    states = apply(contact.law.state, contact.reduced(ends, contact.depth), contact.params)
+    states = apply(contact.kernels.state, contact.reduced(ends, contact.depth), contact.params)
     gained = energy(contact, states[1]) - energy(contact, states[0])
     assert gained == pytest.approx(float(np.sum(weights * force)) * (ends[1] - ends[0]) / 2.0, rel=1e-12)
 
@@ -92,10 +92,10 @@ def test_that_of_a_flat_punch_with_a_range_of_adhesion(strength: float, unit: fl
         delta = mp.mpf(share * depth)
         wanted = float(exact.energy(exact.state(delta)))
         far = max(far, abs(wanted))
-        state = apply(contact.law.state, np.array([share + 1.0]), contact.params)[0]
+        state = apply(contact.kernels.state, np.array([share + 1.0]), contact.params)[0]
         assert abs(energy(contact, state) - wanted) <= 1e-13 * max(far, scale, math.pi * work * b * b), share
-    lost = apply(contact.law.jump_energy, np.array([1.0]), 0.0, contact.params)[0] * contact.force * depth
-    gained = apply(contact.law.jump_energy, np.array([0.0]), 1.0, contact.params)[0] * contact.force * depth
+    lost = apply(contact.kernels.jump_energy, np.array([1.0]), 0.0, contact.params)[0] * contact.force * depth
+    gained = apply(contact.kernels.jump_energy, np.array([0.0]), 1.0, contact.params)[0] * contact.force * depth
     let_go = float(exact.energy(exact.state(mp.mpf(-depth))))
     caught = -float(exact.energy(exact.state(mp.mpf(-work / strength))))
     assert (lost, gained) == pytest.approx((let_go, caught), rel=1e-11, abs=1e-13 * math.pi * work * b * b)

@@ -113,8 +113,8 @@ def test_the_energy_of_the_springs(name: str, case: dict[str, Any]) -> None:
         if row["control"] != "indentation" or "energy" not in row:
             continue
         distance = contact.reduced(np.array([row["value"]]), contact.depth)
-        state = apply(contact.law.state, distance, contact.params)
-        energy = contact.force * contact.depth[0] * float(apply(contact.law.energy, state, contact.params)[0])
+        state = apply(contact.kernels.state, distance, contact.params)
+        energy = contact.force * contact.depth[0] * float(apply(contact.kernels.energy, state, contact.params)[0])
         surface = math.pi * case["work"] * float(row["contact_radius"]) ** 2
         steep = 4.0 * case["parameters"].get("exponent", 1.0) * ULP
         assert abs(energy - float(row["energy"])) <= (1e-12 + steep) * (abs(float(row["energy"])) + 2.0 * surface)

@@ -13,14 +13,14 @@ import pytest
 from roughmdr.numerics.jit import as_argument, njit, once, specialise
 
 
-class _Law(ModuleType):
+class _Kernels(ModuleType):
     adhesive: bool
     offset: float
-    kernel: Callable[[float], float]
+    function: Callable[[float], float]
     jump: Callable[[float], float]
 
 
-law = _Law("law")
+kernel = _Kernels("kernel")
 
 
 @njit
@@ -36,27 +36,27 @@ def _square(x: float) -> float:
 def _loop(x: float, count: int) -> float:
     total = 0.0
     for _ in range(count):
-        total += law.kernel(x) + law.offset
-        if law.adhesive:
-            total -= law.jump(x)
+        total += kernel.function(x) + kernel.offset
+        if kernel.adhesive:
+            total -= kernel.jump(x)
     return total
 
 
-def _filled(name: str, kernel: Callable[[float], float], offset: float) -> _Law:
-    filled = _Law(name)
-    filled.adhesive, filled.offset, filled.kernel = False, offset, kernel
+def _filled(name: str, function: Callable[[float], float], offset: float) -> _Kernels:
+    filled = _Kernels(name)
+    filled.adhesive, filled.offset, filled.function = False, offset, function
     return filled
 
 
 @pytest.mark.parametrize("x", [0.7, -3.25e-9, 4.5e12])
-def test_each_law_has_a_loop_of_its_own(x: float) -> None:
+def test_each_namespace_of_kernels_has_a_loop_of_its_own(x: float) -> None:
     doubled, squared = (specialise(_loop, _filled(*of)) for of in (("double", _double, 0.5), ("square", _square, -2.0)))
     assert doubled(x, 1) == 2.0 * x + 0.5
     assert squared(x, 1) == x * x - 2.0
     assert doubled(x, 1) == 2.0 * x + 0.5
 
 
-def test_a_branch_that_a_law_never_takes_needs_no_kernel() -> None:
+def test_a_branch_that_kernels_never_take_needs_no_kernel() -> None:
     """There is no ``jump``: it is not even compiled."""
     without = _filled("without_jump", _double, 0.0)
     assert not hasattr(without, "jump")

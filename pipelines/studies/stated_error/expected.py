@@ -128,7 +128,7 @@ class _EqualTips:
         self.depth = self.contact.depth[0]
         """The natural depth [m]."""
         self.feet, tops = branch_ends(self.contact)
-        onset = self.depth if self.contact.law.adhesive else 0.0
+        onset = self.depth if self.contact.kernels.adhesive else 0.0
         ends = zip(self.feet, [*tops, math.inf], strict=True)
         self.branches = [(foot * self.depth - onset, top * self.depth - onset) for foot, top in ends]
         """Indentations [m] between which each stable branch lies."""
@@ -195,7 +195,7 @@ class _EqualTips:
 
     def _force_on(self, branch: int, above: Floats) -> Floats:
         """Return the force [N] on a branch at indentations [m] above its start."""
-        law, params = self.contact.law, self.contact.params
+        law, params = self.contact.kernels, self.contact.params
         x = self.feet[branch] + above / self.depth
         state = apply(law.state_on_branch, x, branch + 1.0, params) if law.branched else apply(law.state, x, params)
         return np.asarray(self.contact.force * apply_all(law.radius_force_stiffness, state, params)[1])

@@ -49,13 +49,13 @@ class HalfSpace(NamedTuple):
         with np.errstate(all="ignore"):
             if control == "contact_radius":
                 radius, depth, in_contact = values, contact.at_radius(values)["indentation"], values > 0.0
-                t = apply(contact.law.state_of_radius, radius, contact.radius, contact.params)
+                t = apply(contact.kernels.state_of_radius, radius, contact.radius, contact.params)
             else:
                 found, depth = contact.at_indentation(values), values
                 radius = found["contact_radius"]
                 in_contact = found.get("cohesive_radius", radius) > 0.0
                 distance = np.where(in_contact, contact.reduced(values, contact.depth), 1.0)
-                t = apply(contact.law.state, distance, contact.params)
+                t = apply(contact.kernels.state, distance, contact.params)
             a, delta = float(radius[0]), float(depth[0])
             zone = Zone.of(contact, float(t[0])) if adhesion.cohesive and (a > 0.0 or in_contact[0]) else None
         if not (math.isfinite(a) and math.isfinite(delta)):

@@ -67,7 +67,7 @@ class FieldKernels(ModuleType):
     field: Callable[..., float]
 
 
-law = FieldKernels("law")
+kernel = FieldKernels("kernel")
 """Stands for the kernels of a shape in those that ``specialise`` is given."""
 
 _NODES, _WEIGHTS = gauss(20)
@@ -87,8 +87,8 @@ def slope_at(v: float, integrand: Integrand, params: Floats) -> tuple[float, flo
     """Return x and dg/dv at v."""
     x = math.hypot(v, integrand.base)
     if integrand.rate > 0.0:
-        return x, integrand.rate * law.mdr_profile(integrand.begin + integrand.rate * v, params)[3]
-    _, da, _, dg = law.mdr_profile(law.t_of_radius(x, 1.0, params), params)
+        return x, integrand.rate * kernel.mdr_profile(integrand.begin + integrand.rate * v, params)[3]
+    _, da, _, dg = kernel.mdr_profile(kernel.t_of_radius(x, 1.0, params), params)
     return x, (v / x) * dg / da
 
 
@@ -104,7 +104,7 @@ def weighted_slope(u: float, integrand: Integrand, params: Floats) -> float:
         dv = v
     else:
         v, dv = scale * math.sin(u), scale * math.cos(u)
-    x, dg = law.slope_at(v, integrand, params)
+    x, dg = kernel.slope_at(v, integrand, params)
     if weight == PRESSURE:
         return dg  # dv/sqrt(x^2 - r^2) is du
     if weight == DISPLACEMENT:
@@ -122,7 +122,7 @@ def weighted_slope(u: float, integrand: Integrand, params: Floats) -> float:
 
 def tip_integral(u: float, params: Floats) -> float:
     """Return ∫ g'/x dx from 0 to e^u for g as a power law: g g'/(x g' - g)."""
-    _, da, g, dg = law.mdr_profile(law.t_of_radius(math.exp(u), 1.0, params), params)
+    _, da, g, dg = kernel.mdr_profile(kernel.t_of_radius(math.exp(u), 1.0, params), params)
     rise = math.exp(u) * dg / da
     return rise / (rise - g) * (g / math.exp(u)) if rise > g else 0.0
 
@@ -139,7 +139,7 @@ def integrate(low: float, high: float, size: float, integrand: Integrand, params
         panel, magnitude, even, odd = 0.0, 0.0, 0.0, 0.0
         for i in range(_NODES.size):
             u = at - 0.5 * step * (1.0 - _NODES[i])
-            value = law.weighted_slope(u, integrand, params)
+            value = kernel.weighted_slope(u, integrand, params)
             panel += _WEIGHTS[i] * value
             magnitude += _WEIGHTS[i] * abs(value)
             even += _TAIL[0, i] * value
@@ -150,8 +150,8 @@ def integrate(low: float, high: float, size: float, integrand: Integrand, params
             continue
         total, size = total + panel, size + magnitude
         if substitution == EXP and weight == PRESSURE and integrand.base == 0.0:
-            rest = law.tip_integral(at - step, params)
-            if abs(law.tip_integral(at, params) - panel - rest) <= _TIP * size:
+            rest = kernel.tip_integral(at - step, params)
+            if abs(kernel.tip_integral(at, params) - panel - rest) <= _TIP * size:
                 return total + rest, size
         elif (
             substitution == EXP
@@ -178,9 +178,9 @@ def rate_from(begin: float, base: float, end: float, params: Floats) -> float:
         return 0.0
     far = min(end, 1.5 * begin)
     near = 0.5 * (begin + far)
-    start = law.t_of_radius(begin, 1.0, params)
-    long = (law.t_of_radius(far, 1.0, params) - start) / law.leg(far, base, 1.0)
-    short = (law.t_of_radius(near, 1.0, params) - start) / law.leg(near, base, 1.0)
+    start = kernel.t_of_radius(begin, 1.0, params)
+    long = (kernel.t_of_radius(far, 1.0, params) - start) / kernel.leg(far, base, 1.0)
+    short = (kernel.t_of_radius(near, 1.0, params) - start) / kernel.leg(near, base, 1.0)
     return long if abs(long - short) <= _LINEAR * long else 0.0
 
 
@@ -192,18 +192,18 @@ def substitute(weight: int, inner: bool, point: float, piece: Piece, width: floa
     v_low, v_high, base, foot = piece.v_low, piece.v_high, piece.base, piece.base * width
     if weight == PRESSURE and point != foot:
         if point < foot:
-            substitution, scale = SINH, law.leg(foot, point, width)
+            substitution, scale = SINH, kernel.leg(foot, point, width)
             bottom, top = math.asinh(v_low / scale), math.asinh(v_high / scale)
         else:
-            substitution, scale = COSH, law.leg(point, foot, width)
-            bottom = math.asinh(law.leg(piece.low, point, width) / scale) if piece.low > point else 0.0
-            top = math.asinh(law.leg(piece.high, point, width) / scale)
+            substitution, scale = COSH, kernel.leg(point, foot, width)
+            bottom = math.asinh(kernel.leg(piece.low, point, width) / scale) if piece.low > point else 0.0
+            top = math.asinh(kernel.leg(piece.high, point, width) / scale)
         return substitution, bottom, -math.inf if inner else top, scale
-    reach = law.leg(point, foot, width) if weight == DISPLACEMENT else math.inf
+    reach = kernel.leg(point, foot, width) if weight == DISPLACEMENT else math.inf
     middle = max(v_low, min(0.5 * reach, v_high))  # beyond it x comes near to r
     if not inner:
         bottom = math.asin(middle / reach)
-        top = math.atan2(v_high, law.leg(point, piece.high, width)) if middle < v_high else -math.inf
+        top = math.atan2(v_high, kernel.leg(point, piece.high, width)) if middle < v_high else -math.inf
         return SIN, bottom, top, reach
     if not middle > v_low:
         return EXP, 0.0, -math.inf, 1.0
@@ -218,24 +218,24 @@ def field(point: float, weight: int, a: float, t: float, width: float, params: F
     NaN where floats cannot hold radii as finely as it needs them.
     """
     total, size, high, end, outermost = 0.0, 0.0, a, math.inf, True
-    for index in range(law.breakpoint_count(params) - 1, -1 if law.flat else -2, -1):
-        edge, base = (0.0, 0.0) if index < 0 else law.breakpoint(index, params)
+    for index in range(kernel.breakpoint_count(params) - 1, -1 if kernel.flat else -2, -1):
+        edge, base = (0.0, 0.0) if index < 0 else kernel.breakpoint(index, params)
         low = edge * width
         if weight == PRESSURE and high <= point:
             break
         if low <= a:
-            rate = law.rate_from(edge, base, end, params)
-            begin = law.t_of_radius(edge, 1.0, params) if edge > 0.0 else 0.0
-            if outermost and rate == 0.0 and _EPSILON * a > _COARSE * law.mdr_profile(t, params)[1] * t * width:
+            rate = kernel.rate_from(edge, base, end, params)
+            begin = kernel.t_of_radius(edge, 1.0, params) if edge > 0.0 else 0.0
+            if outermost and rate == 0.0 and _EPSILON * a > _COARSE * kernel.mdr_profile(t, params)[1] * t * width:
                 return math.nan
-            v_high = (t - begin) / rate if outermost and rate > 0.0 else law.leg(high, base * width, width)
-            piece = Piece(low, high, base, law.leg(low, base * width, width), v_high)
+            v_high = (t - begin) / rate if outermost and rate > 0.0 else kernel.leg(high, base * width, width)
+            piece = Piece(low, high, base, kernel.leg(low, base * width, width), v_high)
             if v_high > piece.v_low:
                 for inner in (False, True):
-                    substitution, bottom, top, scale = law.substitute(weight, inner, point, piece, width)
+                    substitution, bottom, top, scale = kernel.substitute(weight, inner, point, piece, width)
                     if top > bottom:
                         integrand = Integrand(weight, point / width, substitution, scale, base, begin, rate)
-                        part, size = law.integrate(bottom, top, size, integrand, params)
+                        part, size = kernel.integrate(bottom, top, size, integrand, params)
                         total += part
             high, outermost = low, False
         end = edge

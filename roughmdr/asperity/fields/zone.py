@@ -46,15 +46,15 @@ class Zone(NamedTuple):
     @classmethod
     def of(cls, contact: Contact, state: float) -> "Zone":
         """Return the zone of an equilibrium under adhesion with a range."""
-        law, params, width = contact.law, contact.params, contact.radius
+        kernels, params, width = contact.kernels, contact.params, contact.radius
         strength = contact.adhesion.strength
         pull = 2.0 * strength / contact.effective_modulus
         if contact.shape.pinned:
             m = min(max(-state / float(params[STRENGTH]), 0.0), 1.0)
-            return cls(width * float(law.radius(state, params)), width * m, pull, strength, 0.0)
+            return cls(width * float(kernels.radius(state, params)), width * m, pull, strength, 0.0)
         if state <= 1.0:
             return cls(0.0, width * state * float(params[JUNCTION]), pull, strength, 0.0)
-        edge: Any = vars(law)["zone_edge"](state, params)
+        edge: Any = vars(kernels)["zone_edge"](state, params)
         return cls(width * edge[1], width * edge[2], pull, strength, float(edge[0]))
 
     def pressure_share(self, r: Floats) -> Floats:

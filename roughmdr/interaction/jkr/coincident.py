@@ -24,7 +24,7 @@ from scipy.special import i0e, i1e
 from roughmdr.interaction import close
 from roughmdr.interaction.close import FULL, NONE
 from roughmdr.interaction.interface import Asperities
-from roughmdr.interaction.jkr.interface import JkrKernels, law
+from roughmdr.interaction.jkr.interface import JkrKernels, kernel
 from roughmdr.interaction.neighbours import within_reach
 from roughmdr.numerics.arguments import Floats
 
@@ -41,20 +41,20 @@ def flanks(which: NDArray[np.int64], h: float, natural: Floats, asperities: Aspe
     for number in range(which.size):
         i = which[number]
         size, rise = asperities.size[i], asperities.depth[i]
-        if law.pinned:
+        if kernel.pinned:
             out[0, number], out[1, number] = size, 0.0
             continue
-        own = law.params_of(asperities.params, i)
+        own = kernel.params_of(asperities.params, i)
         begun = min(max(1.0 + (asperities.height[i] - h) / natural[i], 0.0), 2.0)  # 1 at first touch
         depth = 0.25 * begun * begun * natural[i] + max(asperities.height[i] - h - natural[i], 0.0)
         risen = (natural[i] + depth) / rise
         low, high = 0.5, 1.0
-        while law.terms(high, own)[2] < risen and high < _LARGEST_STATE:
+        while kernel.terms(high, own)[2] < risen and high < _LARGEST_STATE:
             low, high = high, 2.0 * high
-        while law.terms(low, own)[2] > risen and low > 0.0:
+        while kernel.terms(low, own)[2] > risen and low > 0.0:
             low, high = 0.5 * low, low
         t = 0.5 * (low + high)
-        a, da, g, dg, _ = law.terms(t, own)
+        a, da, g, dg, _ = kernel.terms(t, own)
         for _ in range(_MAX_ROUNDS):
             low, high = (t, high) if g < risen else (low, t)
             step = (risen - g) / dg
@@ -63,7 +63,7 @@ def flanks(which: NDArray[np.int64], h: float, natural: Floats, asperities: Aspe
             if abs(step) <= _RTOL * t:
                 break
             t += step
-            a, da, g, dg, _ = law.terms(t, own)
+            a, da, g, dg, _ = kernel.terms(t, own)
         out[0, number] = size * a
         out[1, number] = -0.5 * begun * size * da / (rise * dg)
 

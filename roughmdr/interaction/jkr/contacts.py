@@ -20,7 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roughmdr.interaction.interface import Asperities
-from roughmdr.interaction.jkr.interface import law
+from roughmdr.interaction.jkr.interface import kernel
 from roughmdr.numerics.arguments import Floats
 
 _STEP = 1e-4  # of the state, for the derivatives of lambda, which only a small square multiplies
@@ -63,13 +63,13 @@ def strain_of_power(t: float, n: float) -> float:
 
 def strain_of_profile(t: float, params: Floats) -> float:
     """Return the integral of a profile."""
-    return float(law.elastic_integral(t, params))
+    return float(kernel.elastic_integral(t, params))
 
 
 def lift(t: float, size: float, depth: float, params: Floats) -> float:
     """Return lambda = 2 a/g', which goes to 0 at the edge of a flat; there with no infinite slope over a."""
-    a, da, _, dg, _ = law.terms(t, params)
-    slides = 1.0 - law.held(t)
+    a, da, _, dg, _ = kernel.terms(t, params)
+    slides = 1.0 - kernel.held(t)
     return 2.0 * a * da / dg * slides * size * size / depth
 
 
@@ -77,19 +77,19 @@ def slide(t: float, size: float, depth: float, params: Floats) -> tuple[float, f
     """Return lambda with its first and second derivative over a."""
     step = _STEP * t
     low, here, high = (
-        law.lift(t - step, size, depth, params),
-        law.lift(t, size, depth, params),
-        law.lift(t + step, size, depth, params),
+        kernel.lift(t - step, size, depth, params),
+        kernel.lift(t, size, depth, params),
+        kernel.lift(t + step, size, depth, params),
     )
-    da = size * law.terms(t, params)[1]
-    bend = size * (law.terms(t + step, params)[1] - law.terms(t - step, params)[1]) / (2.0 * step)
+    da = size * kernel.terms(t, params)[1]
+    bend = size * (kernel.terms(t + step, params)[1] - kernel.terms(t - step, params)[1]) / (2.0 * step)
     by_a = (high - low) / (2.0 * step * da)
     return here, by_a, ((high - 2.0 * here + low) / (step * step) - by_a * bend) / (da * da)
 
 
 def held(t: float) -> float:
     """Return the part of its slide from which the edge of a flat keeps a contact; all of it with the flat's radius."""
-    return _HELD * _HELD / (t * t + _HELD * _HELD) if law.flat else 0.0
+    return _HELD * _HELD / (t * t + _HELD * _HELD) if kernel.flat else 0.0
 
 
 def fill(
@@ -106,30 +106,30 @@ def fill(
     for i in range(t.size):
         for row in out:
             row[i] = 0.0
-        size, depth, own = sizes[i], depths[i], law.params_of(params, i)
+        size, depth, own = sizes[i], depths[i], kernel.params_of(params, i)
         c, tilt = 0.25 * field[3, i], math.hypot(field[1, i], field[2, i])
         square = tilt * tilt
         if not inside[i]:
-            if law.pinned:
+            if kernel.pinned:
                 out.lift[i] = -2.0 / 3.0 * c * size * size
             elif tilt > 0.0:
                 steep = tilt * size / depth
                 ratio = max(2.0 * c * size / depth * size, -0.5)
-                out.lift[i] = depth * steep * law.top(0.0, steep, ratio, own)
+                out.lift[i] = depth * steep * kernel.top(0.0, steep, ratio, own)
             continue
         p = math.pi * load[i]
         shift = shift_by_a = shift_by_aa = 0.0
-        if law.pinned:
+        if kernel.pinned:
             a, da, g, dg, first, third, strain = size, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0
         else:
-            a, da, g, dg, first = law.terms(t[i], own)
-            third = law.cubic_integral(t[i], own) * size**3 * depth
-            strain = law.strain(t[i], own) * size * depth * depth
+            a, da, g, dg, first = kernel.terms(t[i], own)
+            third = kernel.cubic_integral(t[i], own) * size**3 * depth
+            strain = kernel.strain(t[i], own) * size * depth * depth
             a, da, g, dg, first = size * a, size * da, depth * g, depth * dg, size * depth * first
             if tilt > 0.0:
-                shift, shift_by_a, shift_by_aa = law.slide(t[i], size, depth, own)
+                shift, shift_by_a, shift_by_aa = kernel.slide(t[i], size, depth, own)
         third_of_tilt = 4.0 / 3.0 * a**3 - 2.0 * shift * first
-        kept = 0.0 if law.pinned else 4.0 * a * a * law.held(t[i])
+        kept = 0.0 if kernel.pinned else 4.0 * a * a * kernel.held(t[i])
         stretch = (first - 0.5 * p) / a + 4.0 / 3.0 * c * a * a
         rising = dg / da  # g'
         out.radius[i], out.slope[i], out.stretch[i] = a, da, stretch
@@ -144,7 +144,7 @@ def fill(
         out.tilting[i] = shift * load[i] + third_of_tilt / math.pi
         out.lift[i] = shift
         out.edge_by_radius[i] = 2.0 * stretch * (rising - stretch / a + 4.0 * c * a) - 2.0 * math.pi * work
-        if tilt > 0.0 and not law.pinned:
+        if tilt > 0.0 and not kernel.pinned:
             kept_by_a = kept * (2.0 / a - 2.0 * t[i] / (t[i] * t[i] + _HELD * _HELD) / da)
             out.edge_by_radius[i] += square * (
                 0.5 * (shift_by_aa * (p - 2.0 * first) + kept_by_a) - shift_by_a * a * rising

@@ -21,5 +21,5 @@ class JkrKernels(CoupledKernels):
     lone_load: Callable[..., float]
 
 
-law = JkrKernels("law")
+kernel = JkrKernels("kernel")
 """Stands for the kernels in parts that ``specialise`` is given."""

@@ -7,7 +7,7 @@ import math
 from typing import NamedTuple
 
 from roughmdr.interaction.interface import Asperities
-from roughmdr.interaction.jkr.interface import law
+from roughmdr.interaction.jkr.interface import kernel
 from roughmdr.numerics.arguments import Floats
 
 _STRIDE, _LEAST_STATE, _MOST_STATE = 1.1, 1e-30, 1e30
@@ -34,12 +34,12 @@ def edge(
     An edge under pressure widens always.
     """
     depth, c, square = surface
-    a, _, g, _, first = law.terms(t, params)
+    a, _, g, _, first = kernel.terms(t, params)
     a, g, first = size * a, rise * g, size * rise * first
-    shift, shift_by_a, _ = law.slide(t, size, rise, params) if square > 0.0 else (0.0, 0.0, 0.0)
+    shift, shift_by_a, _ = kernel.slide(t, size, rise, params) if square > 0.0 else (0.0, 0.0, 0.0)
     stretch = g + 2.0 * c * a * a - depth - 0.5 * shift * square
     p = 2.0 * (first + 4.0 / 3.0 * c * a**3 - a * stretch)
-    turning = shift_by_a * (p - 2.0 * first) + 4.0 * a * a * law.held(t)
+    turning = shift_by_a * (p - 2.0 * first) + 4.0 * a * a * kernel.held(t)
     opening = stretch * stretch if stretch > 0.0 else 0.0
     slides = shift * shift * square > (MOST_SLIDE * a) ** 2
     return 2.0 * math.pi * work * a - opening - 0.5 * square * turning, p, slides
@@ -50,14 +50,14 @@ def next_state(t: float, upwards: bool, surface: Surface, work: float, i: int, a
 
     0 where there is none below, so that it is lost; the state is found by bisection.
     """
-    own, size, rise = law.params_of(asperities.params, i), asperities.size[i], asperities.depth[i]
-    if law.pinned:
+    own, size, rise = kernel.params_of(asperities.params, i), asperities.size[i], asperities.depth[i]
+    if kernel.pinned:
         return 1.0 if upwards else 0.0
     stride = _STRIDE if upwards else 1.0 / _STRIDE
     driven = False
     last = t = max(t * (1.0 + _SET_OUT if upwards else 1.0 - _SET_OUT), _LEAST_STATE)
     while _LEAST_STATE <= t <= _MOST_STATE:
-        force, _, slides = law.edge(t, surface, work, size, rise, own)
+        force, _, slides = kernel.edge(t, surface, work, size, rise, own)
         if slides and not upwards:
             break
         if slides or (force >= 0.0) == upwards:
@@ -65,7 +65,7 @@ def next_state(t: float, upwards: bool, surface: Surface, work: float, i: int, a
         elif driven:
             for _ in range(_BISECTIONS):
                 middle = 0.5 * (last + t)
-                if (law.edge(middle, surface, work, size, rise, own)[0] >= 0.0) == upwards:
+                if (kernel.edge(middle, surface, work, size, rise, own)[0] >= 0.0) == upwards:
                     last = middle
                 else:
                     t = middle
@@ -77,7 +77,7 @@ def next_state(t: float, upwards: bool, surface: Surface, work: float, i: int, a
 
 def lone_load(t: float, surface: Surface, work: float, i: int, asperities: Asperities) -> float:
     """Return the load of a contact at a state, over pi E* L^2."""
-    own, size, rise = law.params_of(asperities.params, i), asperities.size[i], asperities.depth[i]
-    if law.pinned:
+    own, size, rise = kernel.params_of(asperities.params, i), asperities.size[i], asperities.depth[i]
+    if kernel.pinned:
         return float(2.0 / math.pi * size * (surface.depth - 2.0 / 3.0 * surface.curvature * size * size))
-    return float(law.edge(t, surface, work, size, rise, own)[1] / math.pi)
+    return float(kernel.edge(t, surface, work, size, rise, own)[1] / math.pi)

@@ -2,7 +2,7 @@
 
 from functools import partial
 
-from roughmdr.kernels.interface import Columns, Material, law
+from roughmdr.kernels.interface import Columns, Material, kernel
 from roughmdr.numerics.arguments import Floats
 from roughmdr.numerics.jit import njit
 
@@ -30,4 +30,4 @@ def heterogeneous(params: Floats) -> bool:
 
 def radius_force_stiffness(t: float, n: float) -> tuple[float, float, float]:
     """Return a, P and k, each over its natural scale."""
-    return law.radius(t, n), law.force(t, n), law.stiffness(t, n)
+    return kernel.radius(t, n), kernel.force(t, n), kernel.stiffness(t, n)

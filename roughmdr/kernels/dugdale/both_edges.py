@@ -11,7 +11,7 @@ so that one evaluation of J and K is a step of both. Notation of ``equilibrium``
 
 import math
 
-from roughmdr.kernels.profile.interface import law
+from roughmdr.kernels.profile.interface import kernel
 from roughmdr.kernels.profile.layout import (
     CANCELLED,
     CONTROL,
@@ -41,14 +41,14 @@ def newton_of_both(s: float, m: float, wanted: float, params: Floats) -> tuple[f
     """The steps of s and m, and their derivatives by the indentation along the equilibria."""
     beta, size = params[STRENGTH], params[JUNCTION]
     if s <= 1.0:
-        value, slope = law.indentation_at(s, params)
+        value, slope = kernel.indentation_at(s, params)
         step = (wanted - value) / slope
         return step, size * (s + step) - m, 1.0 / slope, size / slope
-    t, a, g, da, dg = law.contact_edge(s, params)
-    if law.end < math.inf and not m < law.widest_zone(a):
-        return law.newton_at_end(s, m, wanted, params)
+    t, a, g, da, dg = kernel.contact_edge(s, params)
+    if kernel.end < math.inf and not m < kernel.widest_zone(a):
+        return kernel.newton_at_end(s, m, wanted, params)
     theta, square = _atan(m / a), a * a + m * m
-    j, k = law.gap_integrals(t, a, g, m, theta, params)
+    j, k = kernel.gap_integrals(t, a, g, m, theta, params)
     short = m * m / (math.sqrt(square) + a)  # c - a
     firm = (k - beta * short) / square  # B/c^2
     off = g - beta * m - wanted
@@ -60,9 +60,9 @@ def newton_of_both(s: float, m: float, wanted: float, params: Floats) -> tuple[f
 
 def newton_at_end(s: float, m: float, wanted: float, params: Floats) -> tuple[float, float, float, float]:
     """As ``newton_of_both`` where the zone stays at the end of the profile; NaN where it does not."""
-    t, a, g, da, dg = law.contact_edge(s, params)
-    widest = law.widest_zone(a)
-    if law.gap_at(t, a, g, widest, params)[0] > 0.5 * math.pi * params[RANGE]:
+    t, a, g, da, dg = kernel.contact_edge(s, params)
+    widest = kernel.widest_zone(a)
+    if kernel.gap_at(t, a, g, widest, params)[0] > 0.5 * math.pi * params[RANGE]:
         return math.nan, math.nan, math.nan, math.nan
     m_by_s = -a * da / widest
     slope = dg - params[STRENGTH] * m_by_s
@@ -72,8 +72,8 @@ def newton_at_end(s: float, m: float, wanted: float, params: Floats) -> tuple[fl
 
 def room(s: float, m: float, params: Floats) -> float:
     """m, or the way of m to the end of the profile where that is shorter: next to it the gap goes as a root."""
-    if law.end < math.inf and s > 1.0:
-        way = law.widest_zone(law.contact_edge(s, params)[1]) - m
+    if kernel.end < math.inf and s > 1.0:
+        way = kernel.widest_zone(kernel.contact_edge(s, params)[1]) - m
         return min(m, way) if way > 0.0 else m
     return m
 
@@ -82,11 +82,11 @@ def both_edges(x: float, s: float, m: float, params: Floats) -> tuple[bool, floa
     """Whether Newton's method from s and m converges on the last branch; then s, m, ds/dx and dm/dx at x."""
     foot, wanted = params[LAST], (x - 1.0) * params[DEPTH]
     for _ in range(_MAX_STEPS if params[CONTROL] == 0.0 else 0):
-        ds, dm, s_slope, m_slope = law.newton_of_both(s, m, wanted, params)
+        ds, dm, s_slope, m_slope = kernel.newton_of_both(s, m, wanted, params)
         beyond = s - foot
         if not (abs(ds) < math.inf and abs(dm) < math.inf):
             break
-        if abs(ds) <= _RTOL_STEP * beyond and abs(dm) <= _RTOL_STEP * law.room(s, m, params) + _ROUNDINGS * m:
+        if abs(ds) <= _RTOL_STEP * beyond and abs(dm) <= _RTOL_STEP * kernel.room(s, m, params) + _ROUNDINGS * m:
             far = s + ds > foot + params[NEAR] * s and (foot > 0.0 or x > params[LAST_X] + CANCELLED)
             return far, s + ds, m + dm, s_slope * params[DEPTH], m_slope * params[DEPTH]
         s = max(s + ds, foot + _MIN_SHARE * beyond)
@@ -98,25 +98,25 @@ def edges_at(x: float, branch: float, params: Floats) -> tuple[bool, float, floa
     """Whether s and m at x on a branch are found together; then both."""
     if branch < params[COUNT] or x <= params[LAST_X]:
         return False, 0.0, 0.0
-    s, m = law.guess_both(x, params)
-    found, s, m, _, _ = law.both_edges(x, s, m if m > 0.0 else params[JUNCTION], params)
+    s, m = kernel.guess_both(x, params)
+    found, s, m, _, _ = kernel.both_edges(x, s, m if m > 0.0 else params[JUNCTION], params)
     return found, s, m
 
 
 def state_on_branch(x: float, branch: float, params: Floats) -> float:
     """s at x on branch number ``branch`` = 1, 2, ..."""
-    found, s, _ = law.edges_at(x, branch, params)
-    return s if found else law.state_by_search(x, branch, params)
+    found, s, _ = kernel.edges_at(x, branch, params)
+    return s if found else kernel.state_by_search(x, branch, params)
 
 
 def contact_at(x: float, branch: float, params: Floats) -> tuple[float, float, float, float]:
     """s, a over width, P over 2 E* width rise and k over 2 E* width at x on a branch."""
-    found, s, m = law.edges_at(x, branch, params)
+    found, s, m = kernel.edges_at(x, branch, params)
     if not found or s <= 1.0:
-        s = s if found else law.state_by_search(x, branch, params)
-        a, push, k = law.radius_force_stiffness(s, params)
+        s = s if found else kernel.state_by_search(x, branch, params)
+        a, push, k = kernel.radius_force_stiffness(s, params)
         return s, a, push, k
-    t, a, g, da, dg = law.contact_edge(s, params)
-    m = min(m, law.widest_zone(a))
-    a, _, rise, push, growth = law.state_between((t, a, m, _atan(m / a), g, da, dg), params)
+    t, a, g, da, dg = kernel.contact_edge(s, params)
+    m = min(m, kernel.widest_zone(a))
+    a, _, rise, push, growth = kernel.state_between((t, a, m, _atan(m / a), g, da, dg), params)
     return s, a, push, growth / rise

@@ -6,7 +6,7 @@ may be stable there only; its sign changes between them are solved for. Notation
 
 import math
 
-from roughmdr.kernels.profile.interface import law
+from roughmdr.kernels.profile.interface import kernel
 from roughmdr.kernels.profile.layout import CONTROL, COUNT, DEPTH, FOLD, MAX_BRANCHES, ONSET, RANGE, UNIT
 from roughmdr.numerics.arguments import Floats
 
@@ -24,12 +24,12 @@ def next_trial(s: float, params: Floats) -> float:
     """The next state to look at."""
     if s < 1.0:
         return max(2.0 * s, _FIRST)
-    if law.flat and s < 2.0:
+    if kernel.flat and s < 2.0:
         return s + _STEP_ON_FLAT
-    begin = 2.0 if law.flat else 1.0
-    trial = begin + max(law.stride * (s - begin), _FIRST_STEP)
-    for i in range(law.softening_count(params)):
-        for t in law.softening_interval(i, params):
+    begin = 2.0 if kernel.flat else 1.0
+    trial = begin + max(kernel.stride * (s - begin), _FIRST_STEP)
+    for i in range(kernel.softening_count(params)):
+        for t in kernel.softening_interval(i, params):
             turn = begin + t / params[UNIT]
             trial = turn if s < turn < trial else trial
     return trial
@@ -40,7 +40,7 @@ def slope_root(low: float, high: float, params: Floats) -> float:
 
     By secants (the Illinois method) and halves, since the slope may jump.
     """
-    at_low, at_high = law.control_at(low, params)[1], law.control_at(high, params)[1]
+    at_low, at_high = kernel.control_at(low, params)[1], kernel.control_at(high, params)[1]
     rising, side = at_high > 0.0, 0
     for i in range(_MAX_ITERATIONS):
         if high - low <= _RTOL * high:
@@ -49,7 +49,7 @@ def slope_root(low: float, high: float, params: Floats) -> float:
         if i % 4 != 3 and abs(at_low) < math.inf and abs(at_high) < math.inf:
             middle = low - at_low * (high - low) / (at_high - at_low)
             middle = min(max(middle, low + 0.5 * _RTOL * high), high - 0.5 * _RTOL * high)
-        slope = law.control_at(middle, params)[1]
+        slope = kernel.control_at(middle, params)[1]
         if (slope > 0.0) == rising:
             high, at_high, at_low, side = middle, slope, at_low * (0.5 if side > 0 else 1.0), 1
         else:
@@ -60,19 +60,19 @@ def slope_root(low: float, high: float, params: Floats) -> float:
 def find_branches(params: Floats) -> None:
     """Fill in the stable branches and the depth; COUNT = 0 where they are not found."""
     params[COUNT], params[FOLD], params[DEPTH], params[ONSET] = 0.0, 0.0, 1.0, 0.0
-    if not law.find_junction(params):
+    if not kernel.find_junction(params):
         return
-    edge_count = law.breakpoint_count(params)
-    beyond = 2.0 * law.breakpoint(edge_count - 1, params)[0] if edge_count > 0 else 0.0
+    edge_count = kernel.breakpoint_count(params)
+    beyond = 2.0 * kernel.breakpoint(edge_count - 1, params)[0] if edge_count > 0 else 0.0
     count, s, foot, m, m_before = 0, 0.0, 0.0, 0.0, 0.0
-    stable = law.control_at(s, params)[1] > 0.0
+    stable = kernel.control_at(s, params)[1] > 0.0
     while True:
         before, was = s, stable
-        s = law.next_trial(s, params)
+        s = kernel.next_trial(s, params)
         if (
             s > 1.0
-            and law.end < math.inf
-            and law.mdr_profile((s - 1.0) * params[UNIT], params)[0] > _NEAR_END * law.end
+            and kernel.end < math.inf
+            and kernel.mdr_profile((s - 1.0) * params[UNIT], params)[0] > _NEAR_END * kernel.end
         ):
             if stable:
                 break
@@ -80,19 +80,19 @@ def find_branches(params: Floats) -> None:
         a = 0.0
         if s > 1.0:
             near = m * (m / m_before) if m_before > 0.0 else 0.0  # as by a power law in steps that grow
-            edges = law.zone_edge_near(s, near, params)
+            edges = kernel.zone_edge_near(s, near, params)
             a, m, m_before = edges[1], edges[2], m
-            _, _, rise, _, growth = law.state_between(edges, params)
+            _, _, rise, _, growth = kernel.state_between(edges, params)
             stable = (rise if params[CONTROL] == 0.0 else growth) > 0.0
         else:
-            stable = law.control_at(s, params)[1] > 0.0
+            stable = kernel.control_at(s, params)[1] > 0.0
         if stable and not was:
-            foot = law.slope_root(before, s, params)
+            foot = kernel.slope_root(before, s, params)
         elif was and not stable:
-            count = law.note_branch(count, foot, law.slope_root(before, s, params), params)
+            count = kernel.note_branch(count, foot, kernel.slope_root(before, s, params), params)
         if stable and m < _THIN_ZONE * a and a > beyond:
             break
         if not s < _LARGEST or count >= MAX_BRANCHES:
             return
-    law.measure_branches(law.note_branch(count, foot, math.inf, params), params)
+    kernel.measure_branches(kernel.note_branch(count, foot, math.inf, params), params)
     params[ONSET] = 1.0 - params[RANGE] / params[DEPTH]

@@ -18,7 +18,7 @@ contact radius a grows with s, on a flat tip as a = s - 1 up to s = 2. Notation 
 
 import math
 
-from roughmdr.kernels.profile.interface import law
+from roughmdr.kernels.profile.interface import kernel
 from roughmdr.kernels.profile.layout import CONTROL, COUNT, DEPTH, JUNCTION, RANGE, STRENGTH, TENSION
 from roughmdr.numerics.arguments import Floats
 from roughmdr.numerics.double_double import ROUNDING
@@ -33,69 +33,69 @@ def state_along(s: float, params: Floats) -> tuple[float, float, float, float, f
     if s <= 1.0:
         size = params[JUNCTION]
         c = s * size
-        f, slope = law.f_and_slope(c, params)
+        f, slope = kernel.f_and_slope(c, params)
         delta = f - 2.0 / math.pi * beta * c - params[RANGE]
         rise = size * (slope - 2.0 / math.pi * beta)
         return 0.0, delta, rise, -0.25 * math.pi * beta * c * c, -0.5 * math.pi * beta * c * size
-    return law.state_between(law.zone_edge(s, params), params)
+    return kernel.state_between(kernel.zone_edge(s, params), params)
 
 
 def state_between(edges: tuple[float, ...], params: Floats) -> tuple[float, float, float, float, float]:
     """As ``state_along`` from both edges, s > 1, as ``zone_edge`` returns them."""
     beta = params[STRENGTH]
     t, a, m, theta, g, da, dg = edges
-    _, k = law.gap_integrals(t, a, g, m, theta, params)
+    _, k = kernel.gap_integrals(t, a, g, m, theta, params)
     square = a * a + m * m
     firm = k - beta * m * m / (math.sqrt(square) + a)  # B
     rise = (dg * m + beta * a * da) / (firm * m + beta * square * theta)
-    push = law.reduced_load(t, params) - 0.5 * beta * (a * m + square * theta)
+    push = kernel.reduced_load(t, params) - 0.5 * beta * (a * m + square * theta)
     return a, g - beta * m, rise * firm, push, rise * (a * firm - beta * theta * theta * square)
 
 
 def indentation_at(s: float, params: Floats) -> tuple[float, float]:
     """The indentation at s, and its derivative by s."""
-    _, delta, rise, _, _ = law.state_along(s, params)
+    _, delta, rise, _, _ = kernel.state_along(s, params)
     return delta, rise
 
 
 def control_at(s: float, params: Floats) -> tuple[float, float]:
     """The controlled quantity, indentation or force, and its derivative by s."""
-    _, delta, rise, push, growth = law.state_along(s, params)
+    _, delta, rise, push, growth = kernel.state_along(s, params)
     return (delta, rise) if params[CONTROL] == 0.0 else (push, growth)
 
 
 def reduced_control(s: float, params: Floats) -> float:
     """x: the controlled quantity above the lowest foot over DEPTH."""
-    return (law.control_at(s, params)[0] + params[DEPTH]) / params[DEPTH]
+    return (kernel.control_at(s, params)[0] + params[DEPTH]) / params[DEPTH]
 
 
 def radius_force_stiffness(s: float, params: Floats) -> tuple[float, float, float]:
     """a over width, P over 2 E* width rise, and k over 2 E* width: a - beta theta^2 c^2/B."""
-    a, _, rise, push, growth = law.state_along(s, params)
+    a, _, rise, push, growth = kernel.state_along(s, params)
     return a, push, growth / rise
 
 
 def radius(s: float, params: Floats) -> float:
     """a over width."""
-    return law.zone_edge(s, params)[1] if s > 1.0 else 0.0
+    return kernel.zone_edge(s, params)[1] if s > 1.0 else 0.0
 
 
 def cohesive_radius(s: float, params: Floats) -> float:
     """c over width."""
     if s <= 1.0:
         return s * params[JUNCTION]
-    _, a, m, _, _, _, _ = law.zone_edge(s, params)
+    _, a, m, _, _, _, _ = kernel.zone_edge(s, params)
     return math.sqrt(a * a + m * m)
 
 
 def force(s: float, params: Floats) -> float:
     """P over 2 E* width rise."""
-    return law.radius_force_stiffness(s, params)[1]
+    return kernel.radius_force_stiffness(s, params)[1]
 
 
 def stiffness(s: float, params: Floats) -> float:
     """k over 2 E* width, infinite at a smooth fold."""
-    return law.radius_force_stiffness(s, params)[2]
+    return kernel.radius_force_stiffness(s, params)[2]
 
 
 def edges_at_radius(radius: float, width: float, params: Floats) -> tuple[float, ...]:
@@ -104,23 +104,23 @@ def edges_at_radius(radius: float, width: float, params: Floats) -> tuple[float,
     """
     if params[COUNT] == 0.0:
         return math.nan, math.nan, math.nan, math.nan, math.nan, math.nan, math.nan
-    t = law.t_of_radius(radius, width, params)
-    a, da, g, dg = law.mdr_profile(t, params)
-    if law.flat and t <= 0.0:
-        t, a, g, da, dg = law.contact_edge(2.0, params)
-    m = law.zone_width(t, a, g, dg / da if da > 0.0 else math.inf, 0.0, params)
+    t = kernel.t_of_radius(radius, width, params)
+    a, da, g, dg = kernel.mdr_profile(t, params)
+    if kernel.flat and t <= 0.0:
+        t, a, g, da, dg = kernel.contact_edge(2.0, params)
+    m = kernel.zone_width(t, a, g, dg / da if da > 0.0 else math.inf, 0.0, params)
     return t, a, m, math.atan2(m, a), g, da, dg
 
 
 def equilibrium_at_radius(radius: float, width: float, params: Floats) -> tuple[float, float, float]:
     """delta/rise, P/(2 E* width rise) and k/(2 E* width) at a contact radius [m]."""
-    _, delta, rise, push, growth = law.state_between(law.edges_at_radius(radius, width, params), params)
+    _, delta, rise, push, growth = kernel.state_between(kernel.edges_at_radius(radius, width, params), params)
     return delta, push, growth / rise
 
 
 def cohesive_at_radius(radius: float, width: float, params: Floats) -> float:
     """c/width at a contact radius [m]."""
-    edges = law.edges_at_radius(radius, width, params)
+    edges = kernel.edges_at_radius(radius, width, params)
     return math.hypot(edges[1], edges[2])
 
 
@@ -140,8 +140,8 @@ def relative_errors(params: Floats) -> tuple[float, float]:
     On a flat m^2 = c^2 - a^2 has the roundings of a and c, where m is sqrt(2 RANGE) or more next to the edge, and
     about sqrt(pi RANGE/beta) at pull-off.
     """
-    roundings = law.roundings(params) + _ZONE_ROUNDINGS
-    if law.flat:
+    roundings = kernel.roundings(params) + _ZONE_ROUNDINGS
+    if kernel.flat:
         roundings += math.sqrt(params[STRENGTH] / (2.0 * math.pi)) / params[RANGE]
     error = ROUNDING * roundings
     return max(_ZONE_ERROR, error), error
@@ -157,12 +157,12 @@ def energy(s: float, params: Floats) -> float:
     if s == 0.0:
         return 0.0
     if s > 1.0:
-        t, a, m, theta, g, _, _ = law.zone_edge(s, params)
-    stretch = beta * m if s > 1.0 else -law.indentation_at(s, params)[0]
+        t, a, m, theta, g, _, _ = kernel.zone_edge(s, params)
+    stretch = beta * m if s > 1.0 else -kernel.indentation_at(s, params)[0]
     square = a * a + m * m
     c = math.sqrt(square)
-    bent, push = (law.elastic_integral(t, params), law.reduced_load(t, params)) if s > 1.0 else (0.0, 0.0)
-    l = law.energy_integral(a, g, m, theta, params)
+    bent, push = (kernel.elastic_integral(t, params), kernel.reduced_load(t, params)) if s > 1.0 else (0.0, 0.0)
+    l = kernel.energy_integral(a, g, m, theta, params)
     short = m * m / (c + a)
     elastic = bent - 2.0 * stretch * push + stretch * stretch * a
     cohesive = 2.0 * l + stretch * (square * theta - a * m) - beta * short * short * (2.0 * c + a) / 3.0

@@ -10,7 +10,7 @@ so that c follows from a quadratic equation (D. Maugis, J. Colloid Interface Sci
 
 import math
 
-from roughmdr.kernels.profile.interface import law
+from roughmdr.kernels.profile.interface import kernel
 from roughmdr.kernels.profile.layout import COUNT, RANGE, STRENGTH
 from roughmdr.numerics.arguments import Floats
 from roughmdr.numerics.jit import compiled
@@ -39,7 +39,7 @@ def zone_edge(s: float, params: Floats) -> tuple[float, float, float, float, flo
 
 def zone_edge_near(s: float, near: float, params: Floats) -> tuple[float, float, float, float, float, float, float]:
     """As ``zone_edge``, which needs no place to begin at."""
-    return law.zone_edge(s, params)
+    return kernel.zone_edge(s, params)
 
 
 def gap_integrals(t: float, a: float, g: float, m: float, theta: float, params: Floats) -> tuple[float, float]:
@@ -59,4 +59,4 @@ def state_of_radius(radius: float, width: float, params: Floats) -> float:
     if params[COUNT] == 0.0:
         return math.nan
     a = radius / width
-    return 1.0 + a / law.zone_width(a, a, 2.0 * a * a, 4.0 * a, 0.0, params)
+    return 1.0 + a / kernel.zone_width(a, a, 2.0 * a * a, 4.0 * a, 0.0, params)

@@ -14,7 +14,7 @@ dx/sqrt(c^2 - x^2) is q/x dpsi. Where the zone is thin g(x) - g(a) has few digit
 
 import math
 
-from roughmdr.kernels.profile.interface import law
+from roughmdr.kernels.profile.interface import kernel
 from roughmdr.numerics.arguments import Floats
 from roughmdr.numerics.gauss import unit_gauss
 
@@ -35,14 +35,14 @@ _PIECE_NODES, _PIECE_WEIGHTS = unit_gauss(12)  # for a piece of a table, on whic
 
 def widest_zone(a: float) -> float:
     """m where the zone comes to the end of the profile."""
-    return max(math.sqrt((law.end - a) * (law.end + a)), _NEAREST) if law.end < math.inf else math.inf
+    return max(math.sqrt((kernel.end - a) * (kernel.end + a)), _NEAREST) if kernel.end < math.inf else math.inf
 
 
 def t_along(q: float, base: float, params: Floats) -> float:
     """t where q = sqrt(x^2 - base^2)."""
-    if law.has_t_of_q and base > 0.0:
-        return law.t_of_q(q, params)
-    return law.t_of_radius(min(math.sqrt(base * base + q * q), _BEFORE * law.end), 1.0, params)
+    if kernel.has_t_of_q and base > 0.0:
+        return kernel.t_of_q(q, params)
+    return kernel.t_of_radius(min(math.sqrt(base * base + q * q), _BEFORE * kernel.end), 1.0, params)
 
 
 def zone_panel(
@@ -62,7 +62,7 @@ def zone_panel(
         psi = end + (begin - end) * nodes[i]
         q, below = reach * math.cos(psi), reach * math.sin(psi)
         x = math.sqrt(base * base + q * q)
-        _, da, value, dg = law.mdr_profile(law.t_along(q, base, params), params)
+        _, da, value, dg = kernel.mdr_profile(kernel.t_along(q, base, params), params)
         push = weights[i] * q * dg / da
         k += push
         if thin:
@@ -78,7 +78,7 @@ def zone_panel(
 
 def rise_begins(low: float, c: float, params: Floats) -> float:
     """The x below which the profile is flat to all digits, where it rises like x^n with a large n; else ``low``."""
-    a, da, g, dg = law.mdr_profile(law.t_of_radius(c, 1.0, params), params)
+    a, da, g, dg = kernel.mdr_profile(kernel.t_of_radius(c, 1.0, params), params)
     n = a * dg / (da * g) if 0.0 < g < math.inf else 0.0
     return max(low, c * math.cos(_STEEP / math.sqrt(n))) if n > _STEEP else low
 
@@ -88,55 +88,55 @@ def zone_quadrature(a: float, g: float, m: float, params: Floats) -> tuple[float
     c, thin = math.sqrt(a * a + m * m), m < _THIN * a
     j, k, l = 0.0, 0.0, 0.0
     low, base, beside = a, 0.0, m
-    count = law.breakpoint_count(params)
+    count = kernel.breakpoint_count(params)
     for i in range(count + 1):
-        begin, after = law.breakpoint(i, params) if i < count else (math.inf, 0.0)
-        piece = law.of_pieces and i < count
+        begin, after = kernel.breakpoint(i, params) if i < count else (math.inf, 0.0)
+        piece = kernel.of_pieces and i < count
         if begin > low:
             high = min(begin, c)
             while base > 0.0 and _PANEL_RATIO * low < high:  # so that g is as smooth on each panel
-                parts = law.zone_panel((low, _PANEL_RATIO * low, base, piece), g, c, beside, thin, params)
+                parts = kernel.zone_panel((low, _PANEL_RATIO * low, base, piece), g, c, beside, thin, params)
                 j, k, l = j + parts[0], k + parts[1], l + parts[2]
                 low = _PANEL_RATIO * low
                 beside = math.sqrt((c - low) * (c + low))
-            if base == 0.0 and not law.flat and high == c:
-                middle = law.rise_begins(low, c, params)
+            if base == 0.0 and not kernel.flat and high == c:
+                middle = kernel.rise_begins(low, c, params)
                 if middle > low:
-                    parts = law.zone_panel((low, middle, base, piece), g, c, beside, thin, params)
+                    parts = kernel.zone_panel((low, middle, base, piece), g, c, beside, thin, params)
                     j, k, l = j + parts[0], k + parts[1], l + parts[2]
                     low, beside = middle, math.sqrt((c - middle) * (c + middle))
-            if beside > 0.0 and (base > 0.0 or not law.flat):
-                parts = law.zone_panel((low, high, base, piece), g, c, beside, thin, params)
+            if beside > 0.0 and (base > 0.0 or not kernel.flat):
+                parts = kernel.zone_panel((low, high, base, piece), g, c, beside, thin, params)
                 j, k, l = j + parts[0], k + parts[1], l + parts[2]
             if begin >= c:
                 break
             low, beside = begin, math.sqrt((c - begin) * (c + begin))
         base = after
-    return j, k if m < law.widest_zone(a) else _UNBOUNDED, l
+    return j, k if m < kernel.widest_zone(a) else _UNBOUNDED, l
 
 
 def gap_integrals(t: float, a: float, g: float, m: float, theta: float, params: Floats) -> tuple[float, float]:
     """J and K for the contact radius a at t, g = g(a), m = sqrt(c^2 - a^2) and theta = atan(m/a)."""
-    j, k, _ = law.zone_quadrature(a, g, m, params)
+    j, k, _ = kernel.zone_quadrature(a, g, m, params)
     return j, k
 
 
 def gap_integrals_closed(t: float, a: float, g: float, m: float, theta: float, params: Floats) -> tuple[float, float]:
     """J and K where the profile has closed forms: J = I - g(a) theta unless this cancels, as the zone is thin."""
-    i, k = law.zone_integrals(t, a, m, theta, params)
+    i, k = kernel.zone_integrals(t, a, m, theta, params)
     j = i - g * theta
     if j < _FEW_DIGITS * g * theta:
-        j = law.thin_integral(a, g, m, params)
-    return j, min(k, _UNBOUNDED) if m < law.widest_zone(a) else _UNBOUNDED
+        j = kernel.thin_integral(a, g, m, params)
+    return j, min(k, _UNBOUNDED) if m < kernel.widest_zone(a) else _UNBOUNDED
 
 
 def thin_integral(a: float, g: float, m: float, params: Floats) -> float:
     """J of a thin zone by parts, by a rule of few nodes unless there is a breakpoint within."""
     base, c = 0.0, math.sqrt(a * a + m * m)
-    for i in range(law.breakpoint_count(params)):
-        begin, after = law.breakpoint(i, params)
+    for i in range(kernel.breakpoint_count(params)):
+        begin, after = kernel.breakpoint(i, params)
         if a < begin < c:
-            return law.zone_quadrature(a, g, m, params)[0]
+            return kernel.zone_quadrature(a, g, m, params)[0]
         base = after if begin <= a else base
     reach, total = math.sqrt((c - base) * (c + base)), 0.0
     widest = math.atan2(m, math.sqrt((a - base) * (a + base)))
@@ -144,12 +144,12 @@ def thin_integral(a: float, g: float, m: float, params: Floats) -> float:
         psi = widest * _FEW_NODES[i]
         q, below = reach * math.cos(psi), reach * math.sin(psi)
         x = math.sqrt(base * base + q * q)
-        _, da, _, dg = law.mdr_profile(law.t_along(q, base, params), params)
+        _, da, _, dg = kernel.mdr_profile(kernel.t_along(q, base, params), params)
         total += _FEW_WEIGHTS[i] * dg / da * math.atan2(below, x) * q * below / x
     return widest * total
 
 
 def energy_integral(a: float, g: float, m: float, theta: float, params: Floats) -> float:
     """L for the contact radius a, g = g(a), m = sqrt(c^2 - a^2) and theta = atan(m/a)."""
-    _, _, l = law.zone_quadrature(a, g, m, params)
+    _, _, l = kernel.zone_quadrature(a, g, m, params)
     return l

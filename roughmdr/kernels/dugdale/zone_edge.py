@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from roughmdr.kernels.profile.interface import law
+from roughmdr.kernels.profile.interface import kernel
 from roughmdr.kernels.profile.layout import COUNT, JUNCTION, RANGE, STRENGTH, TENSION, UNIT
 from roughmdr.numerics.arguments import Floats
 from roughmdr.numerics.jit import compiled
@@ -26,12 +26,12 @@ def find_junction(params: Floats) -> bool:
     not hold its square.
     """
     wanted, per_c = params[RANGE], (1.0 - 2.0 / math.pi) * params[STRENGTH]
-    low, high = 0.0, min(wanted / per_c, law.end)
-    if not (high > 0.0 and law.f_and_slope(high, params)[0] + per_c * high >= wanted * (1.0 - _ROUNDING)):
+    low, high = 0.0, min(wanted / per_c, kernel.end)
+    if not (high > 0.0 and kernel.f_and_slope(high, params)[0] + per_c * high >= wanted * (1.0 - _ROUNDING)):
         return False
-    c = high if high < law.end else 0.5 * high
+    c = high if high < kernel.end else 0.5 * high
     for _ in range(_MAX_ITERATIONS):
-        f, slope = law.f_and_slope(c, params)
+        f, slope = kernel.f_and_slope(c, params)
         value = f + per_c * c
         low, high = (c, high) if value < wanted else (low, c)
         better = c * math.exp((math.log(wanted) - math.log(value)) * value / (c * (slope + per_c)))
@@ -40,7 +40,7 @@ def find_junction(params: Floats) -> bool:
             break
         c = better if low < better < high else 0.5 * (low + high)
     params[JUNCTION] = c
-    t = params[TENSION] if law.flat else law.t_of_radius(c, 1.0, params)
+    t = params[TENSION] if kernel.flat else kernel.t_of_radius(c, 1.0, params)
     params[UNIT] = t
     return 1.0 / _LARGEST < c < _LARGEST and 0.0 < t < math.inf
 
@@ -48,7 +48,7 @@ def find_junction(params: Floats) -> bool:
 def gap_at(t: float, a: float, g: float, m: float, params: Floats) -> tuple[float, float]:
     """pi/2 times the gap at c, and its derivative by m^2/2."""
     c, theta = math.sqrt(a * a + m * m), _atan(m / a)
-    j, k = law.gap_integrals(t, a, g, m, theta, params)
+    j, k = kernel.gap_integrals(t, a, g, m, theta, params)
     short = m * m / (c + a)
     return j + params[STRENGTH] * (m * theta - short), (k / c + params[STRENGTH] * (c * theta / m - short / c)) / c
 
@@ -77,11 +77,11 @@ def zone_width(t: float, a: float, g: float, slope: float, near: float, params: 
 
     Where the gap at the end of the profile is below w/sigma0, the zone stays there.
     """
-    wanted, widest = 0.5 * math.pi * params[RANGE], law.widest_zone(a)
-    low, high, m = 0.0, math.inf, min(near if near > 0.0 else law.zone_guess(a, slope, params), 0.5 * widest)
+    wanted, widest = 0.5 * math.pi * params[RANGE], kernel.widest_zone(a)
+    low, high, m = 0.0, math.inf, min(near if near > 0.0 else kernel.zone_guess(a, slope, params), 0.5 * widest)
     m_before, off_before, rate_before = 0.0, 0.0, 0.0
     for _ in range(_MAX_ITERATIONS):
-        value, growth = law.gap_at(t, a, g, m, params)
+        value, growth = kernel.gap_at(t, a, g, m, params)
         if not 0.0 < value < math.inf:  # c and a are the same float, near the end of the profile
             low, high = (m, min(high, widest)) if value <= 0.0 else (low, m)
             m, m_before = 0.5 * (low + high), 0.0
@@ -96,8 +96,8 @@ def zone_width(t: float, a: float, g: float, slope: float, near: float, params: 
             bend, turn = (3.0 * mean - 2.0 * rate - rate_before) / across, (rate + rate_before - 2.0 * mean) / across
             way += off * off * (bend + off * turn / across)
         better = min(max(m + way, _LEAST_SHARE * m), m / _LEAST_SHARE)
-        if law.end < math.inf and better >= widest and high == math.inf:
-            if not law.gap_at(t, a, g, widest, params)[0] > wanted:
+        if kernel.end < math.inf and better >= widest and high == math.inf:
+            if not kernel.gap_at(t, a, g, widest, params)[0] > wanted:
                 return widest
             high = widest
         if abs(off) <= _RTOL_STEP or not low < high:
@@ -112,22 +112,22 @@ def contact_edge(s: float, params: Floats) -> tuple[float, float, float, float, 
 
     At its edge, s = 2, they are those from within: beyond, a and g may begin with a slope of 0.
     """
-    if law.flat and s <= 2.0:
+    if kernel.flat and s <= 2.0:
         return 0.0, s - 1.0, 0.0, 1.0, 0.0
-    t = (s - (2.0 if law.flat else 1.0)) * params[UNIT]
-    a, da, g, dg = law.mdr_profile(t, params)
+    t = (s - (2.0 if kernel.flat else 1.0)) * params[UNIT]
+    a, da, g, dg = kernel.mdr_profile(t, params)
     return t, a, g, da * params[UNIT], dg * params[UNIT]
 
 
 def zone_edge(s: float, params: Floats) -> tuple[float, float, float, float, float, float, float]:
     """For s > 1: t, a, m = sqrt(c^2 - a^2), theta, g, da/ds and dg/ds."""
-    return law.zone_edge_near(s, 0.0, params)
+    return kernel.zone_edge_near(s, 0.0, params)
 
 
 def zone_edge_near(s: float, near: float, params: Floats) -> tuple[float, float, float, float, float, float, float]:
     """As ``zone_edge``, where m is about ``near``, or 0 where that is not known."""
-    t, a, g, da, dg = law.contact_edge(s, params)
-    m = law.zone_width(t, a, g, dg / da if da > 0.0 else math.inf, near, params)
+    t, a, g, da, dg = kernel.contact_edge(s, params)
+    m = kernel.zone_width(t, a, g, dg / da if da > 0.0 else math.inf, near, params)
     return t, a, m, _atan(m / a), g, da, dg
 
 
@@ -135,4 +135,4 @@ def state_of_radius(radius: float, width: float, params: Floats) -> float:
     """s at a contact radius [m]."""
     if params[COUNT] == 0.0:
         return math.nan
-    return law.t_of_radius(radius, width, params) / params[UNIT] + (2.0 if law.flat else 1.0)
+    return kernel.t_of_radius(radius, width, params) / params[UNIT] + (2.0 if kernel.flat else 1.0)

@@ -2,7 +2,7 @@
 
 import math
 
-from roughmdr.kernels.profile.interface import law
+from roughmdr.kernels.profile.interface import kernel
 from roughmdr.kernels.profile.layout import COUNT, DEPTH, FOOT, FOOT_X, ONSET, TOP, TOP_X
 from roughmdr.numerics.arguments import Floats
 
@@ -14,10 +14,10 @@ def state_on_branch(x: float, branch: float, params: Floats) -> float:
     if x <= params[FOOT_X + j]:
         return foot
     if j == int(params[COUNT]) - 1:
-        start = law.guess_anywhere(x, params)
-        return law.solve_on_branch(
+        start = kernel.guess_anywhere(x, params)
+        return kernel.solve_on_branch(
             x * params[DEPTH],
-            start if start > foot else foot + 1e-9 * params[law.first_node + law.node_size],
+            start if start > foot else foot + 1e-9 * params[kernel.first_node + kernel.node_size],
             foot,
             math.inf,
             j,
@@ -26,7 +26,7 @@ def state_on_branch(x: float, branch: float, params: Floats) -> float:
     top = params[TOP + j]
     if x >= params[TOP_X + j]:
         return top
-    return law.solve_on_branch(x * params[DEPTH], 0.5 * (foot + top), foot, top, j, params)
+    return kernel.solve_on_branch(x * params[DEPTH], 0.5 * (foot + top), foot, top, j, params)
 
 
 def state(x: float, params: Floats) -> float:
@@ -34,7 +34,7 @@ def state(x: float, params: Floats) -> float:
     j = int(params[COUNT])
     while j > 1 and x < params[FOOT_X + j - 1]:
         j -= 1
-    return law.state_on_branch(x, float(j), params)
+    return kernel.state_on_branch(x, float(j), params)
 
 
 def branch(x: float, before: float, touched: bool, params: Floats) -> float:
@@ -57,19 +57,19 @@ def jump_energy(before: float, after: float, params: Floats) -> float:
     """The energy dissipated in jumps from one branch to another, each where its branch ends (unit as ``energy``)."""
     j, last, lost = int(before), int(after), 0.0
     if j == 0 and last > 0:
-        first = law.branch(params[ONSET], 0.0, True, params)
-        lost -= law.energy(law.state_on_branch(params[ONSET], first, params), params) if first > 0.0 else 0.0
+        first = kernel.branch(params[ONSET], 0.0, True, params)
+        lost -= kernel.energy(kernel.state_on_branch(params[ONSET], first, params), params) if first > 0.0 else 0.0
         j = max(int(first), 1)  # where ``branch`` is 0 attraction begins without a jump, on branch 1
     while j < last:
-        x, u = params[TOP_X + j - 1], law.energy(params[TOP + j - 1], params)
+        x, u = params[TOP_X + j - 1], kernel.energy(params[TOP + j - 1], params)
         j += 1
         while j < int(params[COUNT]) and x > params[TOP_X + j - 1]:
             j += 1
-        lost += u - law.energy(law.state_on_branch(x, float(j), params), params)
+        lost += u - kernel.energy(kernel.state_on_branch(x, float(j), params), params)
     while j > last:
-        x, u = params[FOOT_X + j - 1], law.energy(params[FOOT + j - 1], params)
+        x, u = params[FOOT_X + j - 1], kernel.energy(params[FOOT + j - 1], params)
         j -= 1
         while j > 0 and x <= params[FOOT_X + j - 1]:
             j -= 1
-        lost += u - (law.energy(law.state_on_branch(x, float(j), params), params) if j > 0 else 0.0)
+        lost += u - (kernel.energy(kernel.state_on_branch(x, float(j), params), params) if j > 0 else 0.0)
     return lost

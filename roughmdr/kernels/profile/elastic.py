@@ -9,7 +9,7 @@ import math
 import numpy as np
 
 from roughmdr.kernels.interface import Columns, Material
-from roughmdr.kernels.profile.interface import law
+from roughmdr.kernels.profile.interface import kernel
 from roughmdr.numerics.arguments import Floats
 
 _PER_DEPTH = 2.0**28  # the octaves begin at its inverse of the depth
@@ -18,10 +18,10 @@ _REACH = 2.0**15  # times the step: a kink within it, where g may go as the powe
 
 def prepare(material: Material, columns: Columns, start: int, stop: int, control: float, deepest: float) -> Floats:
     """Return the one row of all asperities."""
-    rows = np.zeros((1, 2 - law.first_node))
+    rows = np.zeros((1, 2 - kernel.first_node))
     rows[0, 0] = columns.params[start]
-    law.fill_params(material, columns.width[start], columns.rise[start], control, rows[0])
-    law.fill_nodes(law.octaves << law.split, rows)
+    kernel.fill_params(material, columns.width[start], columns.rise[start], control, rows[0])
+    kernel.fill_nodes(kernel.octaves << kernel.split, rows)
     return rows
 
 
@@ -37,7 +37,7 @@ def x_of_y(y: float, params: Floats) -> tuple[float, float]:
 
 def indentation_at(t: float, params: Floats) -> tuple[float, float]:
     """g and its derivative by t (H 16)."""
-    _, _, g, dg = law.mdr_profile(t, params)
+    _, _, g, dg = kernel.mdr_profile(t, params)
     return g, dg
 
 
@@ -45,17 +45,17 @@ def contact_near(t: float, x: float, params: Floats) -> tuple[float, float, floa
     """The state, a, P and k at x to first order from t, where all is evaluated, and about the square of their relative
     distance, inf where there is a kink near (H 10, 16, 25; units as in ``radius_force_stiffness``).
     """
-    a, da, g, dg = law.mdr_profile(t, params)
+    a, da, g, dg = kernel.mdr_profile(t, params)
     off = x - g
     step = off / dg
     grown, reach = da * step, _REACH * abs(step)
     left = max(abs(step) / t, abs(off) / x)
-    smooth = law.kink_between(t - reach, t + reach, params) < 1
-    load = law.reduced_load(t, params) + (a + 0.5 * grown) * off  # dP/dg is a
+    smooth = kernel.kink_between(t - reach, t + reach, params) < 1
+    load = kernel.reduced_load(t, params) + (a + 0.5 * grown) * off  # dP/dg is a
     return t + step, a + grown, load, a + grown, left * left if (x > 0.0) & smooth else math.inf
 
 
 def radius_force_stiffness(t: float, params: Floats) -> tuple[float, float, float]:
     """a over width, P over 2 E* width rise, and k over 2 E* width (H 10, 25)."""
-    a = law.mdr_profile(t, params)[0]
-    return a, law.reduced_load(t, params), a
+    a = kernel.mdr_profile(t, params)[0]
+    return a, kernel.reduced_load(t, params), a

@@ -5,7 +5,7 @@ Notation of ``layout``. All in units of the shape's width and rise.
 
 import math
 
-from roughmdr.kernels.profile.interface import law
+from roughmdr.kernels.profile.interface import kernel
 from roughmdr.kernels.profile.layout import CONTROL, DEPTH, ROUNDINGS, TENSION
 from roughmdr.numerics.arguments import Floats
 from roughmdr.numerics.double_double import ROUNDING
@@ -16,7 +16,7 @@ _NODES, _WEIGHTS = unit_gauss(20)
 
 def indentation_at(t: float, params: Floats) -> tuple[float, float]:
     """The indentation at t > 0, and its derivative by t."""
-    a, da, g, dg = law.mdr_profile(t, params)
+    a, da, g, dg = kernel.mdr_profile(t, params)
     root, tension = math.sqrt(a), params[TENSION]
     return g - tension * root, dg - 0.5 * tension * da / root
 
@@ -25,43 +25,43 @@ def control_at(t: float, params: Floats) -> tuple[float, float]:
     """The controlled quantity, indentation or force, and its derivative by t."""
     tension = params[TENSION]
     if params[CONTROL] == 0.0 and tension > 0.0:
-        return law.indentation_at(t, params)
-    a, da, g, dg = law.mdr_profile(t, params)
+        return kernel.indentation_at(t, params)
+    a, da, g, dg = kernel.mdr_profile(t, params)
     if params[CONTROL] == 0.0:
         return g, dg
     root = math.sqrt(a)
     slope = dg - 1.5 * tension * da / root if tension > 0.0 else dg
-    return law.reduced_load(t, params) - tension * a * root, a * slope
+    return kernel.reduced_load(t, params) - tension * a * root, a * slope
 
 
 def reduced_control(t: float, params: Floats) -> float:
     """x: the controlled quantity above the lowest foot over DEPTH; without adhesion above first touch."""
-    value = law.control_at(t, params)[0]
+    value = kernel.control_at(t, params)[0]
     return (value + params[DEPTH]) / params[DEPTH] if params[TENSION] > 0.0 else value
 
 
 def radius(t: float, params: Floats) -> float:
     """a over width."""
-    return law.mdr_profile(t, params)[0]
+    return kernel.mdr_profile(t, params)[0]
 
 
 def radius_force_stiffness(t: float, params: Floats) -> tuple[float, float, float]:
     """a over width, P over 2 E* width rise, and k over 2 E* width: a (a g' - 3/2 dl)/(a g' - 1/2 dl)."""
-    a, da, _, dg = law.mdr_profile(t, params)
+    a, da, _, dg = kernel.mdr_profile(t, params)
     root, tension = math.sqrt(a), params[TENSION]
     rising, pull = root * dg, 0.5 * tension * da
     k = a * (rising - 3.0 * pull) / (rising - pull) if tension > 0.0 else a
-    return a, law.reduced_load(t, params) - tension * a * root, k
+    return a, kernel.reduced_load(t, params) - tension * a * root, k
 
 
 def force(t: float, params: Floats) -> float:
     """P over 2 E* width rise."""
-    return law.radius_force_stiffness(t, params)[1]
+    return kernel.radius_force_stiffness(t, params)[1]
 
 
 def stiffness(t: float, params: Floats) -> float:
     """k over 2 E* width, infinite at a smooth fold."""
-    return law.radius_force_stiffness(t, params)[2]
+    return kernel.radius_force_stiffness(t, params)[2]
 
 
 def adhesion_terms(a: float, params: Floats) -> tuple[float, float]:
@@ -84,9 +84,8 @@ def elastic_integral(t: float, params: Floats) -> float:
         for i in range(_NODES.size):
             z, weight = _NODES[i], _WEIGHTS[i]
             at = low + (high - low) * z * z * z * z
-            total += (
-                8.0 * (high - low) * weight * z * z * z * law.mdr_profile(at, params)[3] * law.reduced_load(at, params)
-            )
+            width = 8.0 * (high - low) * weight * z * z * z
+            total += width * kernel.mdr_profile(at, params)[3] * kernel.reduced_load(at, params)
         low = high
     return total
 
@@ -94,8 +93,7 @@ def elastic_integral(t: float, params: Floats) -> float:
 def energy(t: float, params: Floats) -> float:
     """U over 2 E* width rise^2 DEPTH: from ∫_0^a (g(a) - g(x))^2 dx = 2 ∫ g' ∫ x g' dx dx and the springs' stretch."""
     tension = params[TENSION]
-    a = law.mdr_profile(t, params)[0]
+    a = kernel.mdr_profile(t, params)[0]
     stretch = tension * math.sqrt(a)
-    return (
-        law.elastic_integral(t, params) - 2.0 * stretch * law.reduced_load(t, params) + 0.5 * stretch * stretch * a
-    ) / (2.0 * params[DEPTH])
+    work = kernel.elastic_integral(t, params) - 2.0 * stretch * kernel.reduced_load(t, params)
+    return (work + 0.5 * stretch * stretch * a) / (2.0 * params[DEPTH])

@@ -7,7 +7,7 @@ A branch is stable where the controlled quantity grows with a: where 2 sqrt(a) g
 
 import math
 
-from roughmdr.kernels.profile.interface import law
+from roughmdr.kernels.profile.interface import kernel
 from roughmdr.kernels.profile.layout import (
     CONTROL,
     CORNER,
@@ -40,13 +40,13 @@ _NEXT = 2.0**-52
 
 def steepness(t: float, params: Floats) -> float:
     """2 sqrt(a) g'(a)."""
-    a, da, _, dg = law.mdr_profile(t, params)
+    a, da, _, dg = kernel.mdr_profile(t, params)
     return 2.0 * math.sqrt(a) * dg / da if da > 0.0 else math.inf
 
 
 def log_excess(t: float, tension: float, params: Floats) -> float:
     """ln(steepness/tension), within bounds."""
-    steepness = law.steepness(t, params)
+    steepness = kernel.steepness(t, params)
     return math.log(steepness / tension) if 0.0 < steepness < math.inf else (500.0 if steepness > 0.0 else -500.0)
 
 
@@ -59,26 +59,26 @@ def steepness_crossing(low: float, high: float, tension: float, params: Floats) 
     rising, factor = True, 16.0
     if high == math.inf:
         low, high = max(low, 1e-3), max(low, 1.0)
-        while not law.steepness(high, params) >= tension:
+        while not kernel.steepness(high, params) >= tension:
             if high > _LARGEST:
                 return math.inf
             low, high, factor = high, high * factor, min(factor * factor, 1e20)
     else:
-        rising = law.steepness(high, params) >= tension
-    if low == 0.0 or (law.steepness(low, params) >= tension) == rising:
+        rising = kernel.steepness(high, params) >= tension
+    if low == 0.0 or (kernel.steepness(low, params) >= tension) == rising:
         low, factor = min(0.5 * high, 1.0), 16.0
-        while (law.steepness(low, params) >= tension) == rising:
+        while (kernel.steepness(low, params) >= tension) == rising:
             if low < 1.0 / _LARGEST:
                 return math.inf
             high, low, factor = low, low / factor, min(factor * factor, 1e20)
     z_low, z_high = math.log(low), math.log(high)
-    e_low, e_high = law.log_excess(low, tension, params), law.log_excess(high, tension, params)
+    e_low, e_high = kernel.log_excess(low, tension, params), kernel.log_excess(high, tension, params)
     z, side = z_high, 0
     for i in range(200):
         z = z_low - e_low * (z_high - z_low) / (e_high - e_low) if i % _HALVED > 0 else 0.5 * (z_low + z_high)
         if not z_low < z < z_high:
             z = 0.5 * (z_low + z_high)
-        excess = law.log_excess(math.exp(z), tension, params)
+        excess = kernel.log_excess(math.exp(z), tension, params)
         if abs(excess) < _RTOL or not z_low < z < z_high:
             break
         if (excess > 0.0) == (e_high > 0.0):
@@ -100,20 +100,20 @@ def note_branch(count: int, foot: float, top: float, params: Floats) -> int:
 def list_branches(tension: float, params: Floats) -> int:
     """Fill in where the stable branches begin and end; return their number, 0 where it is not found."""
     count, low, foot, stable = 0, 0.0, 0.0, False
-    for i in range(law.softening_count(params)):
-        peak, dip = law.softening_interval(i, params)
-        if not stable and peak > low and law.steepness(peak, params) >= tension:
-            foot, stable = law.steepness_crossing(low, peak, tension, params), True
+    for i in range(kernel.softening_count(params)):
+        peak, dip = kernel.softening_interval(i, params)
+        if not stable and peak > low and kernel.steepness(peak, params) >= tension:
+            foot, stable = kernel.steepness_crossing(low, peak, tension, params), True
         elif not stable and params[CORNER] > 0.0:
             foot, stable = peak, True
-        if stable and law.steepness(dip, params) < tension:
+        if stable and kernel.steepness(dip, params) < tension:
             beyond = peak * (1.0 + _NEXT) if params[CORNER] > 0.0 else peak
-            count = law.note_branch(count, foot, law.steepness_crossing(beyond, dip, tension, params), params)
+            count = kernel.note_branch(count, foot, kernel.steepness_crossing(beyond, dip, tension, params), params)
             stable = False
         low = dip
     if not stable:
-        foot = law.steepness_crossing(low, math.inf, tension, params)
-    count = law.note_branch(count, foot, math.inf, params)
+        foot = kernel.steepness_crossing(low, math.inf, tension, params)
+    count = kernel.note_branch(count, foot, math.inf, params)
     return count if count <= MAX_BRANCHES and foot < math.inf else 0
 
 
@@ -124,9 +124,9 @@ def find_branches(params: Floats) -> None:
         params[FOOT], params[TOP], params[FOOT_X], params[TOP_X], params[COUNT] = 0.0, math.inf, 0.0, math.inf, 1.0
         params[LAST], params[LAST_X] = 0.0, 0.0
         return
-    law.measure_branches(law.list_branches(params[TENSION] * (1.0 + 2.0 * params[CONTROL]), params), params)
+    kernel.measure_branches(kernel.list_branches(params[TENSION] * (1.0 + 2.0 * params[CONTROL]), params), params)
     if params[COUNT] > 0.0:
-        a = law.mdr_profile(params[FOLD], params)[0]
+        a = kernel.mdr_profile(params[FOLD], params)[0]
         swing = 2.0 * params[TENSION] * math.sqrt(a) * (a if params[CONTROL] > 0.0 else 1.0) / params[DEPTH]
         params[NEAR] = min(_NEAR * max(swing / _SWING, 1.0), _FARTHEST)
 
@@ -135,14 +135,14 @@ def measure_branches(count: int, params: Floats) -> None:
     """Fill in the depth and the distances of the ``count`` branches that are listed."""
     params[DEPTH] = -math.inf
     for j in range(count):
-        depth = -law.control_at(params[FOOT + j], params)[0]
+        depth = -kernel.control_at(params[FOOT + j], params)[0]
         if depth > params[DEPTH]:
             params[FOLD], params[DEPTH] = params[FOOT + j], depth
     if not 0.0 < params[DEPTH] < math.inf:
         return
     for j in range(count):
-        params[FOOT_X + j] = law.control_at(params[FOOT + j], params)[0] / params[DEPTH] + 1.0
+        params[FOOT_X + j] = kernel.control_at(params[FOOT + j], params)[0] / params[DEPTH] + 1.0
         params[TOP_X + j] = (
-            law.control_at(params[TOP + j], params)[0] / params[DEPTH] + 1.0 if j < count - 1 else math.inf
+            kernel.control_at(params[TOP + j], params)[0] / params[DEPTH] + 1.0 if j < count - 1 else math.inf
         )
     params[COUNT], params[LAST], params[LAST_X] = float(count), params[FOOT + count - 1], params[FOOT_X + count - 1]

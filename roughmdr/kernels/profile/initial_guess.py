@@ -9,7 +9,7 @@ import math
 
 import numpy as np
 
-from roughmdr.kernels.profile.interface import law
+from roughmdr.kernels.profile.interface import kernel
 from roughmdr.kernels.profile.layout import CONTROL, COUNT, DEPTH, FLAT, LAST, LAST_X, TENSION
 from roughmdr.numerics.arguments import Floats
 from roughmdr.numerics.jit import compiled
@@ -34,17 +34,17 @@ def y_of_x(x: float, params: Floats) -> float:
 
 def y_over_part(node: int) -> float:
     """y at a node over the length of the part of an octave that begins there."""
-    return float((1 << law.split) + (node & ((1 << law.split) - 1)))
+    return float((1 << kernel.split) + (node & ((1 << kernel.split) - 1)))
 
 
 def y_of_node(node: int) -> float:
     """y at a node."""
-    return law.y_over_part(node) / float(1 << law.split) * float(1 << (node >> law.split))
+    return kernel.y_over_part(node) / float(1 << kernel.split) * float(1 << (node >> kernel.split))
 
 
 def shortening(node: int) -> float:
     """The length of the part that ends at a node over that of the next: 1/2 where an octave begins, else 1."""
-    return 0.5 if node & ((1 << law.split) - 1) == 0 else 1.0
+    return 0.5 if node & ((1 << kernel.split) - 1) == 0 else 1.0
 
 
 def cubic(u: float, first: float, slope: float, last: float, last_slope: float) -> float:
@@ -55,20 +55,20 @@ def cubic(u: float, first: float, slope: float, last: float, last_slope: float) 
 
 def initial_guess(y: float, params: Floats) -> float:
     """t within the octaves; meaningless outside."""
-    node, u = _octave(y, law.split)
-    node = min(max(node, 0), (law.octaves << law.split) - 1)
-    at = law.first_node + 2 * node
-    return law.cubic(u, params[at], params[at + 1], params[at + 2], params[at + 3] * law.shortening(node + 1))
+    node, u = _octave(y, kernel.split)
+    node = min(max(node, 0), (kernel.octaves << kernel.split) - 1)
+    at = kernel.first_node + 2 * node
+    return kernel.cubic(u, params[at], params[at + 1], params[at + 2], params[at + 3] * kernel.shortening(node + 1))
 
 
 def guess_anywhere(x: float, params: Floats) -> float:
     """t within and outside the octaves."""
-    y, largest = law.y_of_x(x, params), math.ldexp(1.0, law.octaves)
+    y, largest = kernel.y_of_x(x, params), math.ldexp(1.0, kernel.octaves)
     if 1.0 <= y < largest:
-        return law.initial_guess(y, params)
-    end = law.first_node if y < 1.0 else law.first_node + 2 * (law.octaves << law.split)
+        return kernel.initial_guess(y, params)
+    end = kernel.first_node if y < 1.0 else kernel.first_node + 2 * (kernel.octaves << kernel.split)
     return float(
-        params[end] * math.pow(y if y < 1.0 else y / largest, float(1 << law.split) * params[end + 1] / params[end])
+        params[end] * math.pow(y if y < 1.0 else y / largest, float(1 << kernel.split) * params[end + 1] / params[end])
     )
 
 
@@ -83,9 +83,9 @@ def x_of_y(y: float, params: Floats) -> tuple[float, float]:
 
 def extrapolate_node(node: int, step: float, params: Floats) -> float:
     """t at a node, a ``step_to`` it away from the node before: t - foot is about an exponential of such steps."""
-    foot, before = params[LAST], law.first_node + law.node_size * (node - 1)
+    foot, before = params[LAST], kernel.first_node + kernel.node_size * (node - 1)
     way = params[before] - foot
-    z = law.y_over_part(node - 1) * params[before + 1] * step / way if way > 0.0 else 0.0
+    z = kernel.y_over_part(node - 1) * params[before + 1] * step / way if way > 0.0 else 0.0
     bend = 1.0 + z * z / 12.0
     return float(foot + way * (bend + 0.5 * z) / (bend - 0.5 * z))
 
@@ -94,7 +94,7 @@ def step_to(node: int, params: Floats) -> float:
     """The step from the node before to node > 1: in ln y; or, as t - foot grows with sqrt y - 1 next to a foot, in the
     logarithm of that, times d ln y by it at the node before.
     """
-    y, before = law.y_of_node(node), law.y_of_node(node - 1)
+    y, before = kernel.y_of_node(node), kernel.y_of_node(node - 1)
     if params[TENSION] == 0.0:
         return math.log(y / before)
     side = math.sqrt(before)
@@ -103,30 +103,30 @@ def step_to(node: int, params: Floats) -> float:
 
 def fill_first_node(params: Floats) -> float:
     """Fill in the first node, the foot or without adhesion a small contact; return about the t at the next."""
-    foot, y = params[LAST], law.y_of_node(1)
+    foot, y = params[LAST], kernel.y_of_node(1)
     if params[TENSION] == 0.0:
-        law.fill_node(0, 1.0, params)
-        return float(law.extrapolate_node(1, math.log(y), params))
-    params[law.first_node] = foot
-    slope = law.control_at(foot, params)[1] if foot > 0.0 or params[FLAT] > 0.0 else math.inf
+        kernel.fill_node(0, 1.0, params)
+        return float(kernel.extrapolate_node(1, math.log(y), params))
+    params[kernel.first_node] = foot
+    slope = kernel.control_at(foot, params)[1] if foot > 0.0 or params[FLAT] > 0.0 else math.inf
     if foot == 0.0 or slope > _CORNER * params[DEPTH] / foot:
-        params[law.first_node + 1] = 0.0
-        way = (law.x_of_y(y, params)[0] - params[LAST_X]) * params[DEPTH]
+        params[kernel.first_node + 1] = 0.0
+        way = (kernel.x_of_y(y, params)[0] - params[LAST_X]) * params[DEPTH]
         return float(foot + way / slope if slope > 0.0 else foot)
-    bent = law.control_at(foot + _BEND * foot, params)[1] / (_BEND * foot)
+    bent = kernel.control_at(foot + _BEND * foot, params)[1] / (_BEND * foot)
     slope = math.sqrt(0.5 * params[DEPTH] / bent) / _FINE
-    params[law.first_node + 1] = slope / law.y_over_part(0)
+    params[kernel.first_node + 1] = slope / kernel.y_over_part(0)
     return float(foot + 2.0 * slope * (math.sqrt(y) - 1.0))
 
 
 def fill_node(node: int, y: float, params: Floats) -> None:
     """Fill in one node, solved for by itself."""
-    foot, at = params[LAST], law.first_node + law.node_size * node
-    x, dx = law.x_of_y(y, params)
-    before = params[at - law.node_size] if node > 0 else 0.0
+    foot, at = params[LAST], kernel.first_node + kernel.node_size * node
+    x, dx = kernel.x_of_y(y, params)
+    before = params[at - kernel.node_size] if node > 0 else 0.0
     start = 2.0 * before - foot if before > foot else max(2.0 * foot, 1e-3)
-    params[at] = law.solve_on_branch(x * params[DEPTH], start, foot, math.inf, int(params[COUNT]) - 1, params)
-    params[at + 1] = dx * params[DEPTH] / law.control_at(params[at], params)[1] / law.y_over_part(node)
+    params[at] = kernel.solve_on_branch(x * params[DEPTH], start, foot, math.inf, int(params[COUNT]) - 1, params)
+    params[at + 1] = dx * params[DEPTH] / kernel.control_at(params[at], params)[1] / kernel.y_over_part(node)
 
 
 def node_beyond(indentation: float, params: Floats) -> int:
@@ -134,8 +134,8 @@ def node_beyond(indentation: float, params: Floats) -> int:
     if params[COUNT] == 0.0:
         return 0
     above_foot = max(indentation + (params[DEPTH] if params[TENSION] > 0.0 else 0.0), 0.0)
-    y = min(max(law.y_of_x(above_foot / params[DEPTH], params), 1.0), math.ldexp(1.0, law.octaves))
-    return int(min(_octave(y, law.split)[0] + _BEYOND, law.octaves << law.split))
+    y = min(max(kernel.y_of_x(above_foot / params[DEPTH], params), 1.0), math.ldexp(1.0, kernel.octaves))
+    return int(min(_octave(y, kernel.split)[0] + _BEYOND, kernel.octaves << kernel.split))
 
 
 def fill_nodes(last: int, rows: Floats) -> None:
@@ -144,32 +144,32 @@ def fill_nodes(last: int, rows: Floats) -> None:
     found = np.empty((3, count))
     t, error, per = found[0], found[1], found[2]
     for i in range(count):
-        t[i] = law.fill_first_node(rows[i]) if rows[i, COUNT] > 0.0 else 0.0
+        t[i] = kernel.fill_first_node(rows[i]) if rows[i, COUNT] > 0.0 else 0.0
     for node in range(1, last + 1):
-        y = law.y_of_node(node)
+        y = kernel.y_of_node(node)
         if node > 1:
-            step = law.step_to(node, rows[0])
+            step = kernel.step_to(node, rows[0])
             for i in range(count):
-                t[i] = law.extrapolate_node(node, step, rows[i])
+                t[i] = kernel.extrapolate_node(node, step, rows[i])
         for _ in range(_STEPS):
-            law.one_step_all(y, found, rows)
+            kernel.one_step_all(y, found, rows)
             unsure = 0
             for i in range(count):
                 unsure += error[i] > _MAX_ERROR
             if unsure == 0:
                 break
         for i in range(count):
-            rows[i, law.first_node + 2 * node] = t[i]
-            rows[i, law.first_node + 2 * node + 1] = law.x_of_y(y, rows[i])[1] * per[i] / law.y_over_part(node)
+            rows[i, kernel.first_node + 2 * node] = t[i]
+            rows[i, kernel.first_node + 2 * node + 1] = kernel.x_of_y(y, rows[i])[1] * per[i] / kernel.y_over_part(node)
         for i in range(count):
             # ``one_step`` is for fixed grips.
             trusted = (error[i] < _MAX_ERROR) & (rows[i, CONTROL] == 0.0)
             if not trusted and rows[i, COUNT] > 0.0:
-                law.fill_node(node, y, rows[i])
+                kernel.fill_node(node, y, rows[i])
 
 
 def one_step_all(y: float, found: Floats, rows: Floats) -> None:
     """Do ``one_step`` to y for all rows; ``found`` has their states, then the bounds of the errors and the slopes."""
     t, error, per = found[0], found[1], found[2]
     for i in range(rows.shape[0]):
-        t[i], error[i], per[i] = law.one_step(t[i], law.x_of_y(y, rows[i])[0], rows[i])
+        t[i], error[i], per[i] = kernel.one_step(t[i], kernel.x_of_y(y, rows[i])[0], rows[i])

@@ -111,5 +111,5 @@ class ProfileKernels(Kernels):
     slope_root: Kernel
 
 
-law = ProfileKernels("law")
+kernel = ProfileKernels("kernel")
 """Stands for the kernels in those that ``specialise`` is given."""

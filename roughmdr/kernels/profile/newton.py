@@ -2,7 +2,7 @@
 
 import math
 
-from roughmdr.kernels.profile.interface import law
+from roughmdr.kernels.profile.interface import kernel
 from roughmdr.kernels.profile.layout import CANCELLED, COUNT, DEPTH, FOOT, FOOT_X, LAST, LAST_X, NEAR, TENSION
 from roughmdr.numerics.arguments import Floats
 
@@ -19,19 +19,19 @@ _FREE_STEPS = 6  # then every third step is a bisection: where the slope changes
 
 def control_above_fold(t: float, j: int, params: Floats) -> tuple[float, float]:
     """The controlled quantity above the lowest foot, and its slope; t on branch j."""
-    value, slope = law.control_at(t, params)
+    value, slope = kernel.control_at(t, params)
     foot = params[FOOT + j]
     step = t - foot
     if params[TENSION] == 0.0:
         return value, slope
     lifted = value + params[DEPTH]
     far = step > params[NEAR] * t and (foot > 0.0 or lifted > CANCELLED * params[DEPTH])
-    if far or law.kink(foot, t, params):
+    if far or kernel.kink(foot, t, params):
         return lifted, slope
     middle = foot + 0.5 * step
-    inner = law.control_at(middle - _INNER * step, params)[1] + law.control_at(middle + _INNER * step, params)[1]
-    outer = law.control_at(middle - _OUTER * step, params)[1] + law.control_at(middle + _OUTER * step, params)[1]
-    mean = _MIDDLE * law.control_at(middle, params)[1] + _INNER_WEIGHT * inner + _OUTER_WEIGHT * outer
+    inner = kernel.control_at(middle - _INNER * step, params)[1] + kernel.control_at(middle + _INNER * step, params)[1]
+    outer = kernel.control_at(middle - _OUTER * step, params)[1] + kernel.control_at(middle + _OUTER * step, params)[1]
+    mean = _MIDDLE * kernel.control_at(middle, params)[1] + _INNER_WEIGHT * inner + _OUTER_WEIGHT * outer
     return params[FOOT_X + j] * params[DEPTH] + step * mean, slope
 
 
@@ -39,7 +39,7 @@ def solve_on_branch(wanted: float, t: float, low: float, high: float, j: int, pa
     """The t on branch j, between low and high, with ``control_above_fold`` = ``wanted``, by Newton's method from t."""
     foot, lift = params[FOOT + j], params[DEPTH] if params[TENSION] > 0.0 else 0.0
     for i in range(200):
-        value, slope = law.control_above_fold(t, j, params)
+        value, slope = kernel.control_above_fold(t, j, params)
         if value < wanted:
             low = t
         elif value > wanted:
@@ -68,7 +68,7 @@ def newton_step(t: float, x: float, params: Floats) -> tuple[float, float, float
     That is the larger of the step and of the relative error of the value times the distance to the foot: on a steep
     power law the value changes much more than t.
     """
-    value, slope = law.indentation_at(t, params)
+    value, slope = kernel.indentation_at(t, params)
     lift = params[DEPTH] if params[TENSION] > 0.0 else 0.0
     wanted, beyond = x * params[DEPTH], t - params[LAST]
     rest = (value + lift) - wanted
@@ -80,7 +80,7 @@ def newton_step(t: float, x: float, params: Floats) -> tuple[float, float, float
 def one_step(t: float, x: float, params: Floats) -> tuple[float, float, float]:
     """The state one step from t, a bound of its error over its distance to the foot (inf next to it), and dt/dx."""
     foot = params[LAST]
-    t, away, per = law.newton_step(t, x, params)
+    t, away, per = kernel.newton_step(t, x, params)
     left = away / (t - foot)
     return t, left * left if (x > params[LAST_X]) & (t - foot > params[NEAR] * t) else math.inf, per
 
@@ -91,10 +91,10 @@ def two_steps(t: float, x: float, params: Floats) -> tuple[float, float, float]:
     Its error is about the product of the squares of the distances from both; inf where there is a kink near.
     """
     foot, lift, wanted = params[LAST], params[DEPTH] if params[TENSION] > 0.0 else 0.0, x * params[DEPTH]
-    value, slope = law.indentation_at(t, params)
+    value, slope = kernel.indentation_at(t, params)
     rest, per = (value + lift) - wanted, 1.0 / slope
     second = max(t - rest * per, foot + _MIN_DISTANCE * (t - foot))
-    value, slope = law.indentation_at(second, params)
+    value, slope = kernel.indentation_at(second, params)
     last, per_last = (value + lift) - wanted, 1.0 / slope
     way, rise = second - t, last - rest
     share = last / rise if rise != 0.0 else 0.0
@@ -106,7 +106,7 @@ def two_steps(t: float, x: float, params: Floats) -> tuple[float, float, float]:
     near = max(abs(second - found) * size, abs(last) * beyond)
     left = far * near / (size * size * beyond * beyond)
     reach = _REACH * abs(way)
-    smooth = law.kink_between(second - reach, second + reach, params) < 1
+    smooth = kernel.kink_between(second - reach, second + reach, params) < 1
     error = left * left if (x > params[LAST_X]) & (beyond > params[NEAR] * found) & smooth else math.inf
     return found, error, params[DEPTH] * per_last
 

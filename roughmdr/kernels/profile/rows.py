@@ -5,7 +5,7 @@ import math
 import numpy as np
 
 from roughmdr.kernels.interface import Columns, Material
-from roughmdr.kernels.profile.interface import law
+from roughmdr.kernels.profile.interface import kernel
 from roughmdr.kernels.profile.layout import (
     BRANCHED,
     CONTROL,
@@ -31,15 +31,15 @@ def fill_params(material: Material, width: float, rise: float, control: float, p
     params[CONTROL], params[NUMBER] = control, params[0]
     params[STRENGTH], params[RANGE] = 2.0 * strength / modulus * width / rise, work / strength / rise
     params[FUNCTIONS] = functions
-    law.note_shape(params)
-    law.find_branches(params)
+    kernel.note_shape(params)
+    kernel.find_branches(params)
 
 
 def note_shape(params: Floats) -> None:
     """Fill in what is known of the shape."""
-    law.precompute(params)
-    params[ROUNDINGS] = law.roundings(params)
-    params[CORNER], params[FLAT], params[BRANCHED] = 1.0 * law.corner, 1.0 * law.flat, 1.0 * law.softens
+    kernel.precompute(params)
+    params[ROUNDINGS] = kernel.roundings(params)
+    params[CORNER], params[FLAT], params[BRANCHED] = 1.0 * kernel.corner, 1.0 * kernel.flat, 1.0 * kernel.softens
 
 
 def repeated(columns: Columns, i: int) -> bool:
@@ -52,16 +52,16 @@ def prepare(material: Material, columns: Columns, start: int, stop: int, control
     """Return a row for each of the asperities from start to stop; the branches of those like the one before are not
     sought again.
     """
-    rows, last = np.zeros((stop - start, 2 - law.first_node)), 0
+    rows, last = np.zeros((stop - start, 2 - kernel.first_node)), 0
     for i in range(stop - start):
-        if i > 0 and law.repeated(columns, start + i):
+        if i > 0 and kernel.repeated(columns, start + i):
             for j in range(rows.shape[1]):
                 rows[i, j] = rows[i - 1, j]
             continue
         rows[i, 0] = columns.params[start + i]
-        law.fill_params(material, columns.width[start + i], columns.rise[start + i], control, rows[i])
-        last = max(last, law.node_beyond(deepest / columns.rise[start + i], rows[i]))
-    law.fill_nodes(last, rows)
+        kernel.fill_params(material, columns.width[start + i], columns.rise[start + i], control, rows[i])
+        last = max(last, kernel.node_beyond(deepest / columns.rise[start + i], rows[i]))
+    kernel.fill_nodes(last, rows)
     return rows
 
 
@@ -70,12 +70,12 @@ def prepare_tabled(
 ) -> Floats:
     """Return as ``prepare`` where the params of an asperity are a row themselves."""
     size = columns.params.shape[1]
-    rows, last = np.zeros((stop - start, size - law.first_node)), 0
+    rows, last = np.zeros((stop - start, size - kernel.first_node)), 0
     for i in range(stop - start):
         rows[i, :size] = columns.params[start + i]
-        law.fill_params(material, columns.width[start + i], columns.rise[start + i], control, rows[i])
-        last = max(last, law.node_beyond(deepest / columns.rise[start + i], rows[i]))
-    law.fill_nodes(last, rows)
+        kernel.fill_params(material, columns.width[start + i], columns.rise[start + i], control, rows[i])
+        last = max(last, kernel.node_beyond(deepest / columns.rise[start + i], rows[i]))
+    kernel.fill_nodes(last, rows)
     return rows
 
 
@@ -84,10 +84,10 @@ def prepare_shared(
 ) -> Floats:
     """Return the one row of asperities that are all alike."""
     size = columns.params.shape[1]
-    rows = np.zeros((1, size - law.first_node))
+    rows = np.zeros((1, size - kernel.first_node))
     rows[0, :size] = columns.params[0]
-    law.fill_params(material, columns.width[0], columns.rise[0], control, rows[0])
-    law.fill_nodes(law.node_beyond(deepest / columns.rise[0], rows[0]), rows)
+    kernel.fill_params(material, columns.width[0], columns.rise[0], control, rows[0])
+    kernel.fill_nodes(kernel.node_beyond(deepest / columns.rise[0], rows[0]), rows)
     return rows
 
 
@@ -120,4 +120,4 @@ def force_scales(
 
 def state_of_radius(radius: float, width: float, params: Floats) -> float:
     """Return t at a contact radius [m]."""
-    return law.t_of_radius(radius, width, params)
+    return kernel.t_of_radius(radius, width, params)

@@ -73,7 +73,7 @@ class LocalLaw(NamedTuple):
     @property
     def adhesive(self) -> bool:
         """Whether rings have a memory."""
-        return bool(self.nodes[0].contact.law.adhesive)
+        return bool(self.nodes[0].contact.kernels.adhesive)
 
     @property
     def range(self) -> float:
@@ -166,7 +166,7 @@ def _read(table: AdaptiveTable, s: Floats, rows: int) -> Floats:
 
 def _end_forces(node: QuadratureNode) -> tuple[float, float]:
     """Return the force [N] of a contact at first touch, and just before it detaches."""
-    kernels, params = node.contact.law, node.contact.params
+    kernels, params = node.contact.kernels, node.contact.params
     state = apply(kernels.state, np.array([1.0, 0.0]), params)
     touching, detaching = node.contact.force * apply(kernels.force, state, params)
     return float(touching), float(detaching)
