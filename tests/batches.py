@@ -110,13 +110,13 @@ class Batch:
         return computed(said)
 
     def kill(self) -> None:
-        """Unless it has ended by itself."""
+        """Kill it, unless it has ended by itself."""
         self.process.kill()
         self.process.wait()
         self._said.close()
 
     def signal_group(self, number: int) -> None:
-        """As a terminal does it."""
+        """Send a signal to the process group, as a terminal does."""
         os.killpg(self.pid, number)
 
     def children(self) -> list[psutil.Process]:

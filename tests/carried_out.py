@@ -13,7 +13,7 @@ from studies.study import Study
 
 
 class CarriedOut(NamedTuple):
-    """What a study printed, the folder that it wrote into, and its numbers."""
+    """A finished study: the text that it printed, the folder that it wrote into, and its numbers."""
 
     text: str
     folder: Path

@@ -1,4 +1,4 @@
-"""What all tests have in common: which are long forms, what a run has compiled, and batches to be disturbed."""
+"""Common to all tests: which are long forms, what a run has compiled, and batches to be disturbed."""
 
 import random
 import re

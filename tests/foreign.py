@@ -10,7 +10,7 @@ import numpy as np
 from hypothesis import strategies as st
 
 ODD = "\x1b[31m\x1b]0;t\x07 \x9b2J \x85 \u202e \u2066 \u200b \r \x00 \x7f é"
-"""What a terminal acts on, and an innocent letter."""
+"""Characters that a terminal acts on, and an innocent letter."""
 _HEX = "F" * 5000
 _TEXTS = (
     *("", "text", ODD.replace("\x00", ""), "1e-3", "1 mm", "days since 2000-01-01", "m", "N", "x" * 100_000),
@@ -43,7 +43,7 @@ _KINDS = ("f8", "f4", "i8", "i4", "i1", "u8", "S1", "O")
 
 
 class Variable(NamedTuple):
-    """Of a netCDF file."""
+    """A variable of a netCDF file."""
 
     dims: tuple[str, ...]
     values: np.ndarray
@@ -51,7 +51,7 @@ class Variable(NamedTuple):
 
 
 class Content(NamedTuple):
-    """Of a netCDF file."""
+    """The content of a netCDF file."""
 
     variables: dict[str, Variable]
     attrs: dict[str, Any]
@@ -211,10 +211,10 @@ CHANGES = st.builds(
 
 
 def control_characters(said: str) -> set[str]:
-    """What a terminal would act on."""
+    """Return the characters that a terminal would act on."""
     return {letter for letter in said if not (letter.isprintable() or letter in "\n\t")}
 
 
 def undefined(said: str) -> list[str]:
-    """Numbers that are none."""
+    """Return nan and inf where a text has them as numbers."""
     return re.findall(r"(?<![\w'])[-+]?(?:nan|inf)\b(?!')", said)

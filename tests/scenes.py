@@ -24,7 +24,7 @@ SCENE: dict[str, Any] = {
     "batch": {"realizations": 16},
 }
 CONDUCTION = {"conductivity": "400 W/m/K", "resistivity": "17 nohm m", "counter_resistivity": "30 nohm m"}
-"""What the conductances need among the variables of a scene."""
+"""The section [conduction], without which a scene has no conductances."""
 
 WIDER_SHAPES: dict[str, dict[str, Any]] = {
     "flat_punch": {"radius": (1e-6, 3e-6)},

@@ -76,7 +76,7 @@ def test_the_examples_run(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyP
 
 
 def test_the_examples_of_the_accessor_run() -> None:
-    """Those of its methods use ``result``, which that of the class has computed."""
+    """Examples of the methods use ``result``, which that of the class has computed."""
     found = {example.name: example for example in doctest.DocTestFinder().find(Analysis, "Analysis", globs={})}
     methods = {name for name in vars(Analysis) if not name.startswith("_")}
     assert {name.removeprefix("Analysis.") for name, each in found.items() if each.examples} == {*methods, "Analysis"}

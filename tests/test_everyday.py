@@ -156,7 +156,7 @@ def test_a_result_is_run_again_from_itself_alone(folder: Path) -> None:
 
 
 def on_a_terminal(*arguments: str, cwd: Path, **environment: str) -> str:
-    """What a command shows where its error stream is a terminal."""
+    """Return the text that a command shows where its error stream is a terminal."""
     leader, follower = pty.openpty()
     with subprocess.Popen(
         [*ROUGHMDR, *arguments], cwd=cwd, stdout=follower, stderr=follower, env={**os.environ, **environment}

@@ -196,7 +196,7 @@ def test_runs_of_one_scene_merge_though_they_took_other_times() -> None:
 
 
 def test_results_in_files_merge_without_their_clocks(tmp_path: Path) -> None:
-    """As the guide says it: there ``run_time`` is a variable like any other."""
+    """In files ``run_time`` is a variable like any other, as the guide says."""
     parts = []
     for name, variable in (("one", "force"), ("two", "contact_radius_sum")):
         short(output={"variables": [variable]}).to_netcdf(tmp_path / f"{name}.nc")

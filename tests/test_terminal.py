@@ -1,4 +1,4 @@
-"""What commands print: nothing that a terminal acts on, and one line where they cannot go on."""
+"""Commands print nothing that a terminal acts on, and one line where they cannot go on."""
 
 import copy
 import os
@@ -126,7 +126,7 @@ def test_nothing_in_a_scene_or_a_name_reaches_a_terminal(folder: Path) -> None:
 
 @pytest.fixture
 def special(folder: Path, tmp_path: Path) -> dict[str, Path]:
-    """What is no ordinary file."""
+    """Paths that are no ordinary files."""
     os.mkfifo(tmp_path / "pipe")
     (tmp_path / "link").symlink_to("/dev/zero")
     (tmp_path / "round").symlink_to(tmp_path / "round")

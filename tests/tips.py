@@ -53,7 +53,7 @@ LAWS = {"hertz": hertz, "cone": cone, "jkr": jkr}
 
 
 class Twin(NamedTuple):
-    """What scipy finds."""
+    """A fit by scipy."""
 
     values: list[float]
     cost: float

@@ -25,7 +25,7 @@ class Block(NamedTuple):
     z: Floats
     """Heights [m]."""
     params: Any
-    """As ``Kernels.prepare`` returns them."""
+    """Prepared parameters, from ``Kernels.prepare``."""
     scales: Floats
     """Natural scales, [row, asperity] in SI."""
     max_scales: Floats
@@ -72,7 +72,7 @@ class SumKernels(Kernels):
     add_totals: Callable[..., None]
     loop: Callable[..., int]
     block_at: Callable[..., Block]
-    """This and what follows: of a flat on a machine."""
+    """Builds the block that begins at an asperity; it and the two below serve a flat on a machine."""
     add_response: Callable[..., None]
     response: Callable[..., Any]
 

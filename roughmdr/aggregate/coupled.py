@@ -52,14 +52,14 @@ class CoupledTotals(NamedTuple):
     conductance_error: Floats
     """That of the conductance."""
     overlap_count: int
-    """At the closest approach with an equilibrium, as the next."""
+    """Number of contacts that overlap a neighbour, at the closest approach with an equilibrium."""
     overlap_share: float
-    """Of the force; NaN of hills, which are parts of one surface."""
+    """Share of the force that they bear there [1]; NaN for hills, which are parts of one surface."""
     marked: int
     """Number of steps without an equilibrium, not at rest to the error asked for, or with too much overlap or contact.
     """
     grid_points: int = 0
-    """Of the boundary elements that all of this is from; 0 where contacts are coupled in pairs."""
+    """Points of the grid of boundary elements that gave these totals; 0 where contacts are coupled in pairs."""
     warnings: tuple[str, ...] = ()
     pull_off: PullOff = PullOff()
     avalanches: tuple[int, ...] | None = None

@@ -17,19 +17,19 @@ from roughmdr.numerics.jit import njit
 GROUP = 256
 """Asperities that are summed over together."""
 LOOKS = 3
-_DISTANCE = 1.0  # from an event, over the range of the looks and of the way to go
-_APART = 2.0**-6  # of the range of the looks: nearer to one before, a look takes its place
+_DISTANCE = 1.0  # distance of far groups from any event, over the range of looks and search
+_APART = 2.0**-6  # least distance of two looks, over the range of all: a nearer look replaces the earlier one
 
 
 class Far(NamedTuple):
     """The sums that the last looks at all contacts have given."""
 
     separation: Floats
-    """Of each look [m]."""
+    """Separation [m] of each look."""
     force: Floats
     """[look, group]: the sum [N] over all groups before this one."""
     stiffness: Floats
-    """[look, group]: alike [N/m]."""
+    """[look, group]: the sum [N/m] over the same groups."""
     lowest_event: Floats
     """[group]: the lowest separation [m] at which an asperity of the groups before is lost, or touched."""
     number: NDArray[np.int64]

@@ -44,12 +44,12 @@ class LoadSeparation(NamedTuple):
     """Number of contacts that overlap a neighbour's, at closest approach; NaN without pairwise interaction."""
     marked_steps: float = math.nan
     """Number of steps without an equilibrium, not at rest to the error asked for, or with too much overlap or contact;
-    NaN likewise.
+    NaN without pairwise interaction.
     """
     grid_points: float = math.nan
-    """Of the boundary elements that the law was computed by; 0 of contacts coupled in pairs, NaN likewise."""
+    """Points of the boundary-element grid that gave the law; 0 if coupled in pairs, NaN if independent."""
     reference_points: float = math.nan
-    """Of the grid of boundary elements beside the law; NaN where there are none."""
+    """Points of the boundary-element grid of the reference beside the law; NaN without [reference]."""
     conductance_error: float = math.nan
     """The largest relative error of the conductance that the assumptions of the model cause; NaN where not asked for.
     """
@@ -58,7 +58,7 @@ class LoadSeparation(NamedTuple):
     avalanche_count: float = math.nan
     """Number of separations at which contacts were made or lost; NaN without pairwise interaction and adhesion."""
     avalanche_size_max: float = math.nan
-    """Largest number of contacts that changed at one; NaN likewise."""
+    """Largest number of contacts that changed at one such separation; NaN where ``avalanche_count`` is."""
     effective_contacts: float = math.nan
     """``effective_number`` of the contacts where the flat is closest; NaN where none bears a force, or it is not known.
     """

@@ -13,7 +13,7 @@ from roughmdr.numerics.jit import njit
 
 _MAX_JUMPS = 10_000_000
 _MAX_ITERATIONS = 100
-_RTOL = 1e-13  # of the way from the last stand to the detachment: an interval with a peak that is narrow enough
+_RTOL = 1e-13  # width of an interval with a peak that is narrow enough, over the distance from last stand to detachment
 
 
 @njit

@@ -13,11 +13,11 @@ from roughmdr.numerics.arguments import Floats
 from roughmdr.numerics.jit import njit
 
 _LAST = 4.0  # roundings: a shorter step of Newton's method is the last
-_GRID = 2.0**-45  # of the distance to the highest place of contact: the last digit of a separation
-_DOUBTFUL = 2.0**-4  # of that: nearer to the middle of two such separations the demand there decides
-_NEGLIGIBLE = 2.0**-51  # of that distance: so far from its root the search may end
-_NEAR = 2.0**-25  # of that distance: so far from its root it may end if the bend leaves so little
-_MOST_BENT = 0.25  # change of the slope on the way to a root, over the slope, that its bend may tell
+_GRID = 2.0**-45  # grid that separations are rounded to, over the power of 2 above the depth below ``top``
+_DOUBTFUL = 2.0**-4  # distance from the middle of two grid points, over the grid, below which the demand there decides
+_NEGLIGIBLE = 2.0**-51  # error of a root, over its depth below ``top``, at which the search ends: two roundings
+_NEAR = 2.0**-25  # longest last step, over the same depth: Newton's error, its square, is about a rounding
+_MOST_BENT = 0.25  # largest correction of Newton's step by the bend, over the step: beyond, the slope alone is used
 
 
 class Stand(NamedTuple):
@@ -26,17 +26,17 @@ class Stand(NamedTuple):
     h: float
     """[m]"""
     demand: float
-    """[m] or [N], as of ``Machine``."""
+    """Demand of the ``Machine`` [m] or [N]."""
     slope: float
     """d(demand)/dh."""
     bound: float
-    """Upper bound of the slope for these contacts at a higher flat."""
+    """Upper bound of the slope with the same contacts at any higher flat."""
     parted: bool
     """Whether no contact is left."""
     bend: float
     """d(slope)/dh; NaN where it is not known."""
     twist: float
-    """How much that may be off."""
+    """Error of ``bend``, per separation."""
 
 
 class Search(NamedTuple):

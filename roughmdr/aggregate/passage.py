@@ -30,12 +30,12 @@ from roughmdr.aggregate.machine_stand import (
 from roughmdr.aggregate.response import stand
 from roughmdr.numerics.jit import njit
 
-_MAX_EVALUATIONS = 1_000_000  # on the way to one demand
-_GROWTH = 2.0  # of the distance to the highest place of contact, at most in a step
-_WIDE = 2.0  # times the way by the slope alone: as far as contacts are known to be far from any event
+_MAX_EVALUATIONS = 1_000_000  # bound on the steps of one search, which takes a few
+_GROWTH = 2.0  # longest step down, over the depth below ``top``: deeper, the slope here says little
+_WIDE = 2.0  # search window, over Newton's step: groups with an event inside are evaluated, all others extrapolated
 _MAX_ROUNDS = 4
-_LOOKED_AT = 2.0**-25  # of the distance to the highest place of contact: there the polynomial has all digits
-_FIRST_STEP = 2.0**-10  # of the natural depth, where contacts have no stiffness yet
+_LOOKED_AT = 2.0**-25  # distance from a look, over the depth below ``top``, within which the polynomial has all digits
+_FIRST_STEP = 2.0**-10  # least bound of a step down, over the natural depth: at first touch there is no stiffness yet
 
 
 @njit

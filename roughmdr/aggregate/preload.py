@@ -12,9 +12,9 @@ from roughmdr.loading.machine import FIXED_GRIPS, MachinePath
 from roughmdr.numerics.arguments import Floats
 
 _RTOL = 1e-14  # error of the separation, over its distance from clear
-_POINTS = 64  # of the unloading whose largest tension is looked for
-_MARGIN = 1.01  # over the stretch of the spring by that tension
-_MAX_RAISES, _RAISE = 40, 0.25  # of where no contact is left, by a part of the distance from the turning point
+_POINTS = 64  # separations of the unloading whose largest tension is sought; it is refined between them
+_MARGIN = 1.01  # rise of the machine above clear, over the stretch of its spring by that tension: 1 would just do
+_MAX_RAISES, _RAISE = 40, 0.25  # trials of a clear separation, and rise of each over its distance from the turn
 
 
 class Specimen(NamedTuple):

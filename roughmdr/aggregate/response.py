@@ -41,7 +41,7 @@ class Asperities(NamedTuple):
     material: Material
     adhesion_range: float
     params: Any
-    """Of all asperities, or one row that all have."""
+    """Prepared parameters of all asperities, or the one row that they share."""
     scales: Floats
     """[group, row, asperity]"""
     max_scales: Floats

@@ -22,7 +22,7 @@ _Firmness = Callable[[Floats], Floats]
 
 _NEAREST, _BEYOND = 1e-9, 4.0  # distances from the foot at which the grid begins and ends, over that of dead load
 _POINTS = 240
-_RTOL_EXTREME = 1e-7  # of an extreme's state: a square root of rounding
+_RTOL_EXTREME = 1e-7  # error of the state of an extreme, over its bracket; the value there is right to the square
 _REGULAR = 1e-2  # relative change of k next to a foot, where that is a corner and no fold
 _LEAST, _ROUNDING = 1e-300, 2.0**-44  # next to a fold, absolute or over its state: nearer, k has no digits
 

@@ -14,7 +14,7 @@ from roughmdr.asperity.contact import Contact, Results
 from roughmdr.kernels.adhesion import release_stretch
 from roughmdr.kernels.profile.layout import DEPTH, RANGE, STRENGTH
 
-_SMALLEST = 1e-150  # of the radius of the first fold: where the search for a small contact begins
+_SMALLEST = 1e-150  # smallest contact radius that is sought, over that of the first fold
 _ITERATIONS = 2000
 _RTOL = 4.0 * float(np.finfo(np.float64).eps)
 

@@ -17,7 +17,7 @@ order was 2 to 3, but a single change may be small by chance."""
 _CELL_ERROR = 0.12
 """Largest error of the force of a paraboloid anywhere on a grid, over the square of cell over contact radius; that of
 many is so much smaller as the root of their number is large."""
-_HERTZ = 4.0 / 3.0  # of the force over E*, contact radius and depth of a paraboloid
+_HERTZ = 4.0 / 3.0  # force of a paraboloid over E* times contact radius times depth (Hertz)
 _DEEPER = 2.0  # so much farther below the lowest flat a map reaches, where the half-space rises to its rim
 
 

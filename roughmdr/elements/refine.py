@@ -11,7 +11,7 @@ from roughmdr.numerics.arguments import Floats
 LARGEST_GRID = 1024
 """Points along the side of a square: some 10 s a step."""
 LIGHT = 0.01
-"""Of the largest force of the path: forces below count as so much where errors are held against the one asked for."""
+"""Least force, over the largest of the path, that a relative error is taken of: below, errors are relative to this."""
 _PER_SUMMIT, _FIRST_ERROR = 9.0, 0.02
 """Points along the mean distance of summits that mostly give a force to that error, on maps and of asperities."""
 _FEWEST, _FASTEST, _ORDER = 1.2, 2.0, 2.0  # refinement of a grid, and the order of the error in its cells

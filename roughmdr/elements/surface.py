@@ -17,7 +17,7 @@ from roughmdr.numerics.arguments import Floats
 POINTS = 512
 """Grid points along the side of a square patch, where no error is asked for."""
 _LEAST_POINTS = 16
-_MARGIN = 1.05  # of the radius at which a contact without neighbours ends at most
+_MARGIN = 1.05  # radius around an asperity that is drawn, over its largest contact radius without neighbours
 _AT_A_TIME = 2**21
 
 
@@ -25,7 +25,7 @@ class Surface(NamedTuple):
     """A surface on a patch."""
 
     sides: Floats
-    """Of the patch along x and y [m]."""
+    """Sides of the patch along x and y [m]."""
     tops: Floats
     """Heights of its summits [m]."""
     periodic: bool

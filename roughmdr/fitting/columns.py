@@ -30,7 +30,7 @@ class Columns(NamedTuple):
     """File or argument, in messages."""
     names: list[str]
     units: list[str]
-    """As they are spelled there; empty for SI."""
+    """Units as the file spells them; empty for SI."""
     rows: list[tuple[str, list[object]]]
     """The place of each row, in messages, and its entries."""
     file: Path | None = None

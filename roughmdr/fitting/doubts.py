@@ -15,8 +15,8 @@ from roughmdr.numerics.arguments import Floats
 from roughmdr.schema.units import format_quantity
 
 _ALIKE, _SAME = 0.99, 0.9999  # correlations
-_SHARED = 0.05  # of a direction in which the law hardly moves
-_WIDE = math.log(2.0)  # of x: half a 95 % interval, a factor of two or so much of the scale
+_SHARED = 0.05  # product of the weights of two parameters in weak directions from which they count as joined
+_WIDE = math.log(2.0)  # half a 95 % interval of x that is very wide: a factor of two, or as much of the scale
 _AT_BOUND = 1e-3
 _BETTER = 25.0  # decrease of the sum of squares over the variance of the noise: five standard deviations
 _FAR_OFF = 2.0  # root mean square of deviations over their stated errors

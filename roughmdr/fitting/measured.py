@@ -25,11 +25,11 @@ class MeasuredCurve(NamedTuple):
     control: str
     """ "separation", or "remote" of the far end of a machine's spring, which is minus the extension of a piezo."""
     values: Floats
-    """Of the control [m]."""
+    """Values of the control [m]."""
     quantity: str
     """ "force" or "pressure"."""
     load: Floats
-    """Of the quantity [N or Pa]."""
+    """Values of the quantity [N or Pa]."""
     error: Floats | None
     """Standard deviation of each load [N or Pa]; None where it is not known."""
     origin: str

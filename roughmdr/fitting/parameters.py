@@ -20,23 +20,23 @@ OFFSET = "offset"
 """The separation, or position of the far end, of the scene where the measurement reads 0."""
 MACHINE = "path.machine_stiffness"
 _FITTED = {*SECTIONS} - {stage.key for stage in STAGES if not stage.fitted}  # on which a normal law depends
-_WIDEST = math.log(1e4)  # of a logarithm, from its start
-_FARTHEST = 1e4  # of other numbers from their start, in their scale
-_NEARBY = math.log(5.0)  # where other starts are sought
+_WIDEST = math.log(1e4)  # bound of |x| of a logarithm: a factor of 10^4 from the start
+_FARTHEST = 1e4  # bound of |x| of other numbers: 10^4 scales from the start
+_NEARBY = math.log(5.0)  # largest |x| of other starts of a logarithm: a factor of 5
 
 
 class Parameter(NamedTuple):
-    """A number that is fitted: start exp(x), or start + scale x, by a search for x from 0."""
+    """A free parameter p(x) = start exp(x) if it must stay positive, else start + scale x; the search begins at 0."""
 
     key: str
     unit: str
     start: float
     scale: float
-    """0 where the logarithm is fitted."""
+    """Scale in the unit of the parameter; 0 where the logarithm is fitted."""
     bounds: tuple[float, float] = (-_WIDEST, _WIDEST)
-    """Of x."""
+    """Bounds of x."""
     nearby: tuple[float, float] = (-_NEARBY, _NEARBY)
-    """The range of x in which other starts are sought."""
+    """Range of x from which other starts are drawn."""
 
     @property
     def name(self) -> str:

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 _FTOL, _XTOL, _GTOL, _MAX_STEPS = 1e-10, 1e-7, 1e-12, 60
 _STARTS, _TRIED = 16, 3  # other starts a parameter, and how many of them are followed
-_POOR = 0.05  # of the largest load: a fit with a larger deviation is sought from elsewhere too
+_POOR = 0.05  # r.m.s. deviation over the largest load from which other starts are tried too
 
 
 class Found(NamedTuple):

@@ -13,7 +13,7 @@ from roughmdr.numerics.arguments import Floats
 _LEVEL = 0.95
 _TOGETHER = 0.99  # probability of the parameters, all together, of which the edges between jumps allow some
 _LEAST_SLOPE = 1e-6  # least slope over the largest: what changes the law by less is not known at all
-_LEAST_FREEDOM = 1e-6  # of a step: one that fits whatever it measures says nothing of the noise
+_LEAST_FREEDOM = 1e-6  # least degrees of freedom of a step: with none, the fit follows it and it tells no noise
 _NEIGHBOURS = 2  # steps to each side whose residuals, with its own, tell the noise of a step
 _LEAST_NOISE = 1e-6  # least variance of the noise over the largest, where degrees of freedom are counted
 _UNKNOWN = 10.0  # standard error of x along a combination that is not known at all, however small the noise
@@ -23,15 +23,15 @@ class Uncertainty(NamedTuple):
     """How well the sought numbers x of a fit are known."""
 
     influence: Floats
-    """How far a standard deviation of each step moves each parameter, [parameter, step]; last, what no step tells."""
+    """Shift of each x by a standard deviation of each step, [parameter, step]; last, along what no step determines."""
     by_even_noise: Floats
-    """Likewise of noise that is even; it says what the curve tells apart, however small its noise."""
+    """Such shifts by equal noise at all steps: they show which parameters the curve can tell apart at all."""
     slopes: Floats
-    """By how much each parameter moves the law, [step, parameter]."""
+    """Derivative of the law with respect to each x, [step, parameter]."""
     reach: Floats
-    """From each parameter to the lower and the upper end of its 95 % interval: [2, parameter]."""
+    """Distances in x to the lower and the upper end of the 95 % interval, [2, parameter]."""
     shift: Floats | None
-    """By how much the error of the law may move each parameter; None where that error is not known."""
+    """Largest shift of each x by the error of the law; None where that error is not known."""
 
     @property
     def covariance(self) -> Floats:

@@ -9,7 +9,7 @@ from roughmdr.schema.material import MaterialArguments
 
 Model = Literal["jkr", "dugdale"]
 AskedModel = Literal[Model, "auto"]
-DEFAULT_ERROR = 0.01  # of the largest force, by which "auto" may be off unless it is given
+DEFAULT_ERROR = 0.01  # default error of the force of "auto", over the largest force
 
 
 class AdhesiveMaterial(MaterialArguments, total=False):

@@ -26,18 +26,18 @@ class Material(NamedTuple):
     strength: float
     """sigma0 [Pa] of adhesion with a range, else inf."""
     functions: float
-    """The address of those of the shape, as ``Kernels.material`` knows it; 0 where the kernels hold them."""
+    """Address of the functions of the shape, from ``Kernels.material``; 0 where the kernels hold them."""
 
 
 class Columns(NamedTuple):
     """Dimensional and other parameters of asperities, one each."""
 
     width: Floats
-    """[m]."""
+    """Radius [m] that contact radii are reduced by."""
     rise: Floats
-    """[m]."""
+    """Height [m] that indentations are reduced by."""
     params: Floats
-    """As ``Shape.nondimensionalise`` returns them."""
+    """Shape parameters [1], from ``Shape.nondimensionalise``."""
 
 
 class Kernels(ModuleType):
@@ -144,11 +144,11 @@ class Kernels(ModuleType):
     find_all: Callable[..., None]
     """(count, contacts, params) -> None; fills in what ``kernels.blocks`` says."""
     evaluate_all: Callable[..., None]
-    """Alike, from the states alone."""
+    """(count, contacts, params) -> None; fills in the same from the states alone."""
     approach: Callable[..., tuple[float, float, float]]
     """(that state, x, params) -> the state after a fixed number of steps, a bound of its error, and d(state)/dx."""
     one_step: Callable[..., tuple[float, float, float]]
-    """As ``approach``, after one step."""
+    """Like ``approach``, with one step."""
     contact_near: Callable[..., tuple[float, float, float, float, float]]
     """(guess of the state, x, params) -> the state, what ``radius_force_stiffness`` returns, and about the square of
     their relative distance from the guess, inf next to a kink; where ``found_near``."""

@@ -13,13 +13,13 @@ from numpy.typing import NDArray
 from roughmdr.numerics.arguments import Floats
 from roughmdr.numerics.jit import njit
 
-_TOLERANCE = 1e-7  # of the lowest force
-_NEGLIGIBLE = 1e-12  # of the largest force: it may be compression, and cancels where the lowest is
-_SAFETY = 2.0  # on how much the force changes beside an interval with detachments
-_INTERVALS, _POINTS = 12, 24  # refined at a time, and points in all of them
-_MIN_POINTS, _MAX_POINTS = 2, 6  # in an interval
-BESIDE = 4.0  # roundings from a detachment to either side
-_NARROW = 4.0  # of that: an interval across a detachment
+_TOLERANCE = 1e-7  # error of the lowest force, over it
+_NEGLIGIBLE = 1e-12  # error of the lowest force, over the largest, which may be compression and cancels there
+_SAFETY = 2.0  # safety factor on the change of the force beside an interval with detachments
+_INTERVALS, _POINTS = 12, 24  # intervals refined at a time, and points in all of them
+_MIN_POINTS, _MAX_POINTS = 2, 6  # points in an interval
+BESIDE = 4.0  # distance from a detachment to either side [rounding]
+_NARROW = 4.0  # width of an interval across a detachment, over that distance
 
 
 @njit

@@ -17,10 +17,10 @@ from roughmdr.numerics.arguments import Floats
 
 _POINTS = 32  # intervals of a leg at first
 _MAX_ROUNDS, _MAX_EXTENSIONS, _MAX_HALVINGS = 30, 200, 8
-_GROWTH, _BEYOND = 1.4, 1.05  # of a step further down: over the last, and over the one by the slope
-_RTOL = 1e-13  # of the distance to the first touch: a shorter move is the last
+_GROWTH, _BEYOND = 1.4, 1.05  # largest step down, over the last one and over that by the slope
+_RTOL = 1e-13  # length of the last move, over the distance to first touch
 _BISECTIONS = 50
-_FIRST = 2.0**-6  # of the depth scale: how far the flat is tried below first touch
+_FIRST = 2.0**-6  # depth below first touch at which the flat is tried first, over the depth scale
 
 ForceAndStiffness = Callable[[Floats, Floats], tuple[Floats, Floats]]
 """(turning points [m] of the flat before, separations [m] after them, in one sense) -> force [N], stiffness [N/m].

@@ -10,17 +10,15 @@ from roughmdr.model_error.parts import Assumptions, ModelError
 from roughmdr.numerics.arguments import Floats
 
 _INDEPENDENT: dict[Origin, float] = {"asperities": 2.2, "summits": 3.5, "hills": 10.0}
-"""Of contacts that do not feel each other, over the root of the contact fraction."""
+"""Error of the conductance without interaction, over the root of the contact fraction."""
 _NEAR, _OVERLAP = 0.1, 0.2
-"""Of contacts that are coupled in pairs: over the contact fraction, and over the share of the force of those that
-overlap.
+"""Error of contacts coupled in pairs, over the contact fraction, and over the share of the force of overlapping ones.
 """
 _FIRST_ORDER, _THIRD = 2.0, 1.5
-"""What the first order adds, over this power of the contact fraction, as (a/D)^3."""
+"""Error that the first order adds, over this power of the contact fraction: (a/D)^3."""
 _HILLS, _SUMMITS = 0.1, 2.5
-"""Of the hills of an isotropic map, two r.m.s. errors of their stiffness (``pipelines/hills.py``); of summits, over the
-root of the contact fraction.
-"""
+"""Error of the hills of an isotropic map, two r.m.s. errors of their stiffness (``pipelines/hills.py``); error of
+summits, over the root of the contact fraction."""
 
 
 def coupled_conductance_error(contact_fraction: Floats, overlap: Floats, ensemble: Ensemble, order: int) -> Floats:

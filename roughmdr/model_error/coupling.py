@@ -8,7 +8,7 @@ from roughmdr.ensemble.ensemble import Ensemble, Origin
 from roughmdr.numerics.arguments import Floats
 
 _SEPARATED, _POWER = 0.18, 2.5
-"""Of contacts that are far from overlapping: (a/D)^5, as their contact fraction tells it."""
+"""Error of contacts that are far from overlapping, (a/D)^5: factor, and power of the contact fraction."""
 _FIRST, _THIRD, _FULLER = 0.65, 1.5, 3.0
 """Error of separated contacts to first order, (a/D)^3: factor, power of the contact fraction, and growth with it."""
 _CROWDED = 5.0
@@ -17,11 +17,11 @@ order they make up for a part of what is left out."""
 _TYPICAL_CROWDING = 0.15
 """Crowding over the share of the force of overlapping contacts, where their distances are not known."""
 _SUMMITS = 1.3
-"""Of the summits of a continuous surface, whose flanks are no paraboloids, over the root of the contact fraction."""
+"""Error of summits, over the root of the contact fraction: flanks of a continuous surface are no paraboloids."""
 
 _HILLS = 0.06
-"""Of the hills of an isotropic map, from 0.3 to 20 % contact (``pipelines/hills.py``); it grows as the root of the
-ratio of the slopes across and along the waves."""
+"""Error of the hills of an isotropic map, from 0.3 to 20 % contact (``pipelines/hills.py``); it grows as the root of
+the ratio of the slopes across and along the waves."""
 
 _HELD = 0.13
 """Error of the force of adhesive hills in contact, over their pull-off forces: that of one paraboloid at Tabor number 2
@@ -31,7 +31,7 @@ WARNED_SHARE, WARNED_FRACTION = 0.1, 0.1
 MARKED_SHARE, MARKED_FRACTION = 0.25, 0.15
 """Shares of the force of overlapping contacts, and contact fractions, from which there is a warning or a mark."""
 HILLS_MARKED_FRACTION = 0.3
-"""Of hills, whose contacts overlap as those of one surface do: beyond, nothing was measured."""
+"""Contact fraction of hills from which there is a mark: nothing was measured beyond. Their contacts may overlap."""
 
 
 def coupling_error(

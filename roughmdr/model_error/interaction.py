@@ -8,7 +8,7 @@ import numpy as np
 from roughmdr.ensemble.ensemble import Origin
 from roughmdr.numerics.arguments import Floats
 
-_NEIGHBOURS = 6  # of a hexagonal lattice
+_NEIGHBOURS = 6  # neighbours of a point of a hexagonal lattice
 
 
 class Coefficients(NamedTuple):
@@ -25,13 +25,13 @@ class Coefficients(NamedTuple):
 
 
 ASPERITIES = Coefficients(low=0.5, typical=0.85, estimate=1.4)
-"""Of asperities on a plane: at random, separated, or on a lattice, for which the first order is exact. There each of
-equal contacts at a spacing L, under a load P, is pressed 3.9003 P/(pi E* L) deeper against the deformed mean plane than
+"""Coefficients of asperities on a plane: at random, separated, or on a lattice, where the first order is exact: each of
+equal contacts with spacing L and load P is pressed 3.9003 P/(pi E* L) deeper against the deformed mean plane than
 alone.
 """
 
 SUMMITS = Coefficients(low=1.5, typical=1.9, estimate=2.0)
-"""Of the summits of a continuous surface, whose flanks are no paraboloids."""
+"""Coefficients of the summits of a continuous surface, whose flanks are no paraboloids."""
 
 TENSION, MOST_TENSION = 0.2, 1.1
 """The error of the pull-off force, of either sign, over the square root of the contact fraction there, as it typically
@@ -39,7 +39,7 @@ is, and what it exceeds in one case of ten: of JKR asperities coupled in pairs (
 
 
 HILLS = Coefficients(low=0.5, typical=3.0, estimate=10.0)
-"""Of the hills of a map, each of which grows into those beside it where it does not feel them: the force is too high
+"""Coefficients of the hills of a map, which without interaction overlap their neighbours: the force is too high
 (``pipelines/hills.py``)."""
 
 OF_ORIGIN: dict[Origin, Coefficients] = {"asperities": ASPERITIES, "summits": SUMMITS, "hills": HILLS}

@@ -21,7 +21,7 @@ _CROWDED = 0.36
 
 _SOFT = 1e3  # Pa: softer than gels, so that a prefix of the unit may be missing
 _STICKY = 5.0  # J/m^2: stronger than clean metals
-_SIDES = 0.1  # of the patch: a contact of such a radius is none of many
+_SIDES = 0.1  # contact radius, over the side of the patch, above which one contact is not one of many
 
 
 class Givens(NamedTuple):

@@ -134,7 +134,7 @@ def specialise(
 
 
 _ARGUMENTS: dict[tuple[Any, bytes], Any] = {}
-"""What ``as_argument`` has returned, for a function and the types of its arguments."""
+"""Results of ``as_argument``, by function and types of its arguments."""
 
 
 def as_argument(function: Callable[..., Any], *arguments: object) -> Callable[..., Any]:

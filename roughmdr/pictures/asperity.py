@@ -24,11 +24,11 @@ if TYPE_CHECKING:
 
 _BODY, _LINE, _FREE = "#e4e0d8", "#4a4a4a", "#9a9a9a"
 _COMPRESSED, _STRETCHED = BRANCH_COLOURS["loading"], BRANCH_COLOURS["unloading"]
-_SIZE = 7.4, 8.6  # of the figure [inches]
-_NEAR = 0.985  # of the contact radius, up to which the axis of pressure holds all
-_VISIBLE = 0.06  # of the height of a panel, above which a length is named
+_SIZE = 7.4, 8.6  # width and height of the figure [inches]
+_NEAR = 0.985  # radius over the contact radius up to which the axis of pressure shows all values
+_VISIBLE = 0.06  # least length with a name, over the height of a panel
 _POINTS = 25  # points of a drawn spring
-_STRAIGHT = 2  # at each end
+_STRAIGHT = 2  # straight points at each end of a drawn spring
 
 
 def draw_asperity(

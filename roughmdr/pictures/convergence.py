@@ -17,11 +17,11 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-_POINTS = 160  # of a curve
+_POINTS = 160  # points of a curve
 _MAX_LINES = 6  # cells drawn each; more are a band
 _FEW = 40  # points of a curve below which each is marked
 _WIDE = 1000  # realisations from which on only powers of ten fit under an axis
-_DEEPEST = 0.03  # of the least error drawn: what lies deeper is named alone
+_DEEPEST = 0.03  # lowest level drawn, over the least error: a lower one is only named
 _NEEDED = 0.01, 0.001  # relative standard errors of which the note says what they take
 
 
@@ -32,7 +32,7 @@ class Convergence(NamedTuple):
     cell: int
     values: Floats
     span: float = 0.0
-    """What errors are relative to, where that is not the mean."""
+    """Size that errors are relative to; 0 for the mean."""
 
     def running(self) -> tuple[Ints, Floats]:
         """Return numbers n of realisations, and the relative standard error of the mean of the first n."""

@@ -28,7 +28,7 @@ _PER_AREA = {
     "friction_energy": ("energy lost by slip per area", "J m-2"),
 }
 _LONG_NAMES = {"remote": "position of the far end of the spring", "lateral": "lateral displacement"}
-_FEW, _ROBUST = 30, 9  # of fewer realisations than these the median is taken over so many steps, too
+_FEW, _ROBUST = 30, 9  # with fewer realisations the median is also taken over up to so many steps
 _BAND = (0.16, 0.84)
 
 

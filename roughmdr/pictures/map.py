@@ -20,22 +20,22 @@ if TYPE_CHECKING:
 
 DIVERGING = "PuOr_r"
 """Colours for tension and compression, which the colour-blind tell apart."""
-_WIDTH = 7.4  # of the figure [inches]
-_SIDE = 5.4  # of the longer side of the patch
-_BAR = 0.7  # of the height of a colour bar below [inches]
-_MIN_RADIUS = 0.6  # of a contact as it is drawn [points]
+_WIDTH = 7.4  # width of the figure [inches]
+_SIDE = 5.4  # longer side of the patch as it is drawn [inches]
+_BAR = 0.7  # height of a colour bar below [inches]
+_MIN_RADIUS = 0.6  # least radius of a contact as it is drawn [points]
 _OTHERS = 5000  # asperities drawn that are not in contact, the highest
-_PIXELS = 1200  # of a height map along a side
+_PIXELS = 1200  # most pixels of a height map along a side
 
 
 class Frame(NamedTuple):
     """The rectangle that is drawn."""
 
     x: float
-    """Of its lower left corner [m], as ``y``."""
+    """Lower left corner [m], with ``y``."""
     y: float
     width: float
-    """[m], as ``height``."""
+    """Size [m], with ``height``."""
     height: float
 
     @classmethod

@@ -14,9 +14,9 @@ from roughmdr.numerics.arguments import Floats
 from roughmdr.shapes import Shape
 
 WIDTH = 2.2  # half of what is drawn, over the radius within which there is a pressure
-_POINTS = 600  # of a curve
+_POINTS = 600  # points of a curve
 _SPRINGS = 13  # within that radius
-_INSIDE = 1.0 - 1e-12  # of the limit of a profile
+_INSIDE = 1.0 - 1e-12  # largest radius that is drawn, over the limit of a profile
 
 
 class Springs(NamedTuple):

@@ -26,7 +26,7 @@ _THEORY_VARIABLES: dict[str, tuple[Variable, bool]] = {
     "pressure": ("pressure", False),
     "contact_fraction": ("contact_fraction", False),
 }
-_SEPARATION_RTOL = 1e-9  # of the largest separation
+_SEPARATION_RTOL = 1e-9  # difference of equal separations, over the largest
 
 
 def plan_of_result(file: Path | None, result: ResultView) -> Plan:

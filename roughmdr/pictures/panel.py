@@ -18,7 +18,7 @@ MAX_RUNS, _SOME_RUNS = 64, 16
 """Realisations that are drawn as lines; of more, the range of most of them is a band, and some are lines."""
 _MOST = (0.05, 0.95)
 _FOR_RANGE = 256  # realisations from which the range of an axis follows
-_DECADES = 4.0  # of a logarithmic axis at most
+_DECADES = 4.0  # maximum number of decades of a logarithmic axis
 _EXPONENTIAL = 1e3  # ratio of the largest to the least positive value from which an axis is logarithmic
 _INSETS = ((0.42, 0.5, 0.55, 0.46), (0.12, 0.12, 0.36, 0.24))
 """Places of an inset, in shares of a panel: left, bottom, width and height."""

@@ -17,7 +17,7 @@ from roughmdr.scene import Scene, read
 from roughmdr.schema.wording import short_repr
 from roughmdr.variables import DONE, SEPARATION
 
-_RTOL = 1e-6  # of the largest force of a realisation, by which that of the contacts may be off
+_RTOL = 1e-6  # difference of the forces of contacts and curve, over the largest of the curve, that is allowed
 _FAR = 1e3  # depths of the path above it: there no contact is left
 
 
@@ -25,7 +25,7 @@ class Snapshot(NamedTuple):
     """The asperities of a realisation and their contacts at a step."""
 
     scene: Scene
-    """Of the cell alone."""
+    """The scene of the cell, without a sweep."""
     ensemble: Ensemble
     contacts: EachContact
     separation: float

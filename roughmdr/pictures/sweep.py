@@ -24,8 +24,8 @@ _MAX_PANELS = 12
 _MAX_TICKS = 7
 _MAX_WRITTEN = 36  # cells of a colour map in which the numbers are written
 _DECADES = 100.0  # ratio of numbers from which their axis is logarithmic
-_EVEN = 1e-6  # of a step of a logarithmic axis
-_LUMINANCE = (0.2126, 0.7152, 0.0722)  # of red, green and blue: ITU-R BT.709
+_EVEN = 1e-6  # difference of steps that count as equal on a logarithmic axis, over a step
+_LUMINANCE = (0.2126, 0.7152, 0.0722)  # weights of red, green and blue (ITU-R BT.709)
 _DARK = 0.5
 
 

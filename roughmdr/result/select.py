@@ -13,7 +13,7 @@ from roughmdr.schema.wording import short_repr, suggestion
 from roughmdr.storage.labelled import Array, Labelled
 from roughmdr.variables import AUXILIARY_COORDINATES, swept_name
 
-_NEAR = 0.01  # of the value asked for, so that values of a logspace can be typed
+_NEAR = 0.01  # difference from the value asked for, over it, that is allowed: so values of a logspace can be typed
 
 
 def select(result: ResultView, chosen: Mapping[str, object]) -> tuple[ResultView, str]:

@@ -51,7 +51,7 @@ class Cluster:
         return max(1, self._threads)
 
     def compute(self, tasks: Iterable[Task], stop: threading.Event, sink: Sink) -> None:
-        """As in ``Pool``; a task whose workers die one after another has failed, any other is tried again."""
+        """Compute the tasks; one whose workers die one after another has failed, any other is tried again."""
         from distributed import as_completed
 
         if not self._client.nthreads():

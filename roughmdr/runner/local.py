@@ -45,7 +45,7 @@ class Serial:
     workers = 1
 
     def compute(self, tasks: Iterable[Task], stop: threading.Event, sink: Sink) -> None:
-        """As in ``Pool``."""
+        """Compute the tasks in this thread."""
         for task in tasks:
             if not stop.is_set():
                 sink(compute(task))
@@ -58,7 +58,7 @@ class Threads:
         self.workers = workers
 
     def compute(self, tasks: Iterable[Task], stop: threading.Event, sink: Sink) -> None:
-        """As in ``Pool``."""
+        """Compute the tasks in threads."""
         from dask.threaded import get
 
         # Its own pool: those that dask keeps are dead in a process that was forked from this one.
@@ -83,7 +83,7 @@ class Processes:
         self.workers = workers
 
     def compute(self, tasks: Iterable[Task], stop: threading.Event, sink: Sink) -> None:
-        """As in ``Pool``; a task whose process dies again and again has failed."""
+        """Compute the tasks in processes; one whose process dies again and again has failed."""
         from dask.multiprocessing import get
 
         context = multiprocessing.get_context("spawn")  # a fork of a process with threads may hang

@@ -11,8 +11,8 @@ from roughmdr.errors import OutOfRange, ShapeError
 from roughmdr.numerics.arguments import Floats, Ints
 from roughmdr.shapes import Shape
 
-_FALL_ROUNDING = 1e-12  # of the highest f, by which a function may fall
-_DIP_ROUNDING = 1e-9  # of the largest g, likewise
+_FALL_ROUNDING = 1e-12  # fall of a function f, over the highest f, that counts as rounding
+_DIP_ROUNDING = 1e-9  # fall of g, over the largest g, that counts as rounding
 _BLOCK = 64  # edges in the smallest block
 _POINTS = 20  # for a block: at the distance of its width, (3 + sqrt(8))^-20 is below a rounding
 _CHUNK = 1 << 19  # numbers in memory at once

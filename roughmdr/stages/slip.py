@@ -39,7 +39,7 @@ _NEEDED = {
     "tangential_stiffness": ("contact_radius_sum",),
     "friction_energy": ("force", "energy"),
 }
-_MAX_RATIO = 1e-6 / float(np.finfo(float).eps)  # of numbers to their difference, of which six digits remain
+_MAX_RATIO = 1e-6 / float(np.finfo(float).eps)  # largest ratio of numbers to their difference: six digits of it remain
 
 
 def normal_variables(names: Iterable[str]) -> list[str]:

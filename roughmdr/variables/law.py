@@ -106,7 +106,7 @@ LOSSES = {"dissipated_energy", "machine_dissipated_energy"}
 """Energies that jumps lose; under a machine each jump is located for them."""
 
 DEFAULT_STEPS = 200
-"""Of the loading to a preload."""
+"""Default number of steps of the loading to a preload."""
 
 STEP_COORDINATES = {**CONTROLS, TRAVEL.name: TRAVEL.units, LATERAL.name: LATERAL.units}
 """Coordinates that a result can have over its steps, with their units."""

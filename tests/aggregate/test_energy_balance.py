@@ -48,7 +48,7 @@ def down(stops: np.ndarray) -> Iterator[tuple[np.ndarray, np.ndarray]]:
 
 
 def up(stops: np.ndarray) -> Iterator[tuple[np.ndarray, np.ndarray]]:
-    """The same between those at which contacts are lost, in the root of the distance to the next: there P is smooth."""
+    """Yield nodes between losses of contacts, in the root of the distance to the next: P is smooth in it."""
     for a, b in pairwise(stops):
         s = np.sqrt(b - a) * (1.0 - NODES) / 2.0
         yield b - s * s, WEIGHTS * np.sqrt(b - a) * s

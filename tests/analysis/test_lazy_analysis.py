@@ -1,4 +1,4 @@
-"""Of a file that is opened in chunks nothing is computed before it is asked for, and then to the same bits."""
+"""Nothing of a file that is opened in chunks is computed before it is asked for; then the bits are the same."""
 
 import subprocess
 import sys

@@ -172,7 +172,7 @@ def test_contacts_between_the_points_of_a_coarse_grid_are_found() -> None:
 
 @pytest.mark.large
 def test_the_stated_error_covers_nearly_all_errors_on_maps() -> None:
-    """Of the study of hills, against elements with 12 points a shortest wave, from 0.3 to 20 % contact."""
+    """Compare with elements with 12 points a shortest wave, from 0.3 to 20 % contact, on maps of the study of hills."""
     within = []
     for case in (*ISOTROPIC[::3], *ANISOTROPIC[:2]):
         separation, height = separations(case), case.height(12)

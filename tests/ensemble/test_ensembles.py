@@ -160,7 +160,7 @@ def test_fast_families_are_those_of_scipy_to_the_bit(name: str, own: tuple[float
 
 
 def test_the_nominal_area_is_that_of_the_sides_unless_it_is_given() -> None:
-    """Of a square patch its square, of a rectangle the product, in any unit; without sides it is not known."""
+    """The area is patch^2, or patch_x patch_y, in any unit; without sides it is not known."""
     for unit in (1e-6, 1.0):
         made = ensemble([0.0], None, radius=unit)
         for attrs, area in (

@@ -47,7 +47,7 @@ def test_a_rule_between_cuts_takes_roots_next_to_them(cuts: list[float]) -> None
 
 
 def test_a_mean_over_a_tail_has_a_bound_below_index_1_only() -> None:
-    """Of u^-k over u from 0 to 1: 1/(1 - k)."""
+    """The mean of u^-k over u from 0 to 1 is 1/(1 - k)."""
     found = mean_over_edge(np.array([-1.0, 0.0, 0.5, 0.9, 1.0, 1.5]))
     np.testing.assert_allclose(found, [0.5, 1.0, 2.0, 10.0, math.inf, math.inf], rtol=1e-12)
 
@@ -59,7 +59,7 @@ def test_half_of_a_distribution_lies_above_its_median() -> None:
 
 
 def test_a_narrow_distribution_far_from_0_has_its_moments() -> None:
-    """Those of its family are checked by bounds that do not depend on where it lies."""
+    """Moments of a family are checked by bounds that do not depend on the location."""
     heights = {"distribution": "loguniform", "a": 1000.0, "b": 1001.0, "mean": 0.0, "std": "1 um"}
     section = {"source": "random", "shape": "paraboloid", "count": 2000, "patch": "1 mm", "radius": "50 um"}
     height = rm.generate({**section, "height": heights}, seed=1).height.values

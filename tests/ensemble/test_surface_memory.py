@@ -21,7 +21,7 @@ POINTS = 1024
 
 @pytest.fixture(scope="module")
 def maps(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The same waves in several files, of which some have gaps."""
+    """Files with one and the same waves, some of them with gaps."""
     folder = tmp_path_factory.mktemp("maps")
     along = 2.0 * np.pi * np.arange(POINTS) / 32.0
     height = 1e-7 * np.outer(np.cos(along), np.cos(along + 1.0))

@@ -115,7 +115,7 @@ def test_every_start_leads_to_one_minimum(depth: float) -> None:
 @pytest.mark.large
 @pytest.mark.parametrize("seed", [0, large(1), large(2)])
 def test_the_offset_alone_is_the_best_of_all(seed: int) -> None:
-    """As no other parameter gives way, each jump that it moves over a step bounds it."""
+    """Each jump that it moves over a step bounds it, since no other parameter can make up for that."""
     down = np.linspace(1e-5, -1e-5, 150)
     steps = np.concatenate([down, down[::-1]])
     measured, _ = on_a_gel(steps, 0.01, seed)

@@ -57,7 +57,7 @@ class Case(NamedTuple):
         return mp.mpf(row[quantity]) * mp.mpf(self.unit(quantity))
 
     def scale(self, quantity: str) -> float:
-        """Of the pull-off: depth under fixed grips, force under dead load."""
+        """Return the size of the pull-off: depth under fixed grips, force under dead load."""
         control = {"indentation": "displacement", "force": "force"}[quantity]
         return abs(float(self.exact(self.pull_off[control], quantity)))
 
@@ -95,7 +95,7 @@ CASES = [
 
 
 ROUNDINGS = 16 * np.finfo(float).eps
-"""Of the control and its scale, in what leads from one to the other."""
+"""Rounding error of the distance to the fold, from those of the control and its scale."""
 
 
 def bounds(case: Case, row: Row, X: float, sought: bool, slack: float = 0.0) -> dict[str, float]:

@@ -24,7 +24,7 @@ bits = {name: compiled(getattr(vector_math, name))(0.3).hex() for name in sys.ar
 where = {file.split("-")[0].split(".")[-1]: folder and str(folder.parent) for file, folder in cache.USED.items()}
 print(json.dumps({"package": cache.__file__, "bits": bits, "where": where, "written": str(cache.folders().written)}))
 """
-_PR_CAPBSET_DROP, _CAP_DAC_OVERRIDE = 24, 1  # of Linux: without it root, too, may not write everywhere
+_PR_CAPBSET_DROP, _CAP_DAC_OVERRIDE = 24, 1  # numbers of Linux: without this capability root must obey modes
 
 
 def _obey_permissions() -> None:

@@ -95,7 +95,7 @@ def test_a_function_is_compiled_for_python_only_if_that_calls_it() -> None:
 
 
 def in_threads(make: Callable[[int], Any], count: int = 8) -> list[Any]:
-    """What threads make that begin together and take turns as often as Python lets them."""
+    """Return the results of threads that begin together and take turns as often as Python lets them."""
     gate, interval = threading.Barrier(count), sys.getswitchinterval()
 
     def wait_and_make(number: int) -> Any:

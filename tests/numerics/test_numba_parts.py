@@ -1,4 +1,4 @@
-"""What roughmdr uses of numba beside its public face is still there, and does what it is used for."""
+"""Private parts of numba that roughmdr uses are still there, and do what they are used for."""
 
 from typing import Any
 

@@ -47,7 +47,7 @@ def test_a_running_sum_is_right_everywhere(terms: list[float]) -> None:
 @settings(deadline=None)
 @given(st.lists(st.floats(-1e9, 1e9), min_size=1, max_size=BLOCK))
 def test_a_block_has_its_sum_and_its_least_term(terms: list[float]) -> None:
-    """What lies behind the terms in the array has no part in them, at any length."""
+    """Numbers behind the terms in the array have no part in the results, at any length."""
     count, rest = len(terms), [-1e30] * (BLOCK - len(terms))
     total = sum_by_halves(np.array(terms + rest), count, BLOCK)
     assert abs(total - math.fsum(terms)) <= 8.0 * EPS * math.fsum(map(abs, terms))

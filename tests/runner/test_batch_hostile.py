@@ -1,4 +1,4 @@
-"""What was once done to batches, or will be: nothing is lost, mixed up or taken for what it is not."""
+"""Batches under hostile treatment: nothing is lost, mixed up or taken for something else."""
 
 import errno
 import json

@@ -1,4 +1,4 @@
-"""What is shown of a batch while it runs: counts, and the steps of runs that last."""
+"""Progress of a running batch as it is shown: counts, and the steps of long runs."""
 
 import threading
 import time

@@ -45,7 +45,7 @@ from roughmdr.storage.result_file import read_result
 
 @pytest.fixture(scope="module")
 def killed(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """What a batch leaves that was killed half way."""
+    """The folder of a batch that was killed half way."""
     folder = tmp_path_factory.mktemp("killed") / "batch"
     write_scene(folder, CURVES)
     batch = Batch(folder)

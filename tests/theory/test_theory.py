@@ -49,7 +49,7 @@ def test_the_integrals_are_parabolic_cylinder_functions(variable: str, n: float,
 
 
 def fuller_tabor_by_mpmath(h: float, lowest: float, work: float) -> float:
-    """The same integral over the contact radius, where the JKR force is a polynomial in sqrt(a)."""
+    """Return the integral over the contact radius, where the JKR force is a polynomial in sqrt(a)."""
     effective_modulus, radius, std, density = (
         mp.mpf(GW[key]) for key in ("effective_modulus", "radius", "std", "density")
     )

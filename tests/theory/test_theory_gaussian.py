@@ -148,7 +148,7 @@ def test_the_moments_of_the_heights_of_summits(alpha: float) -> None:
 
 @pytest.mark.parametrize("alpha", [1.6, 2.5])
 def test_far_away_the_area_grows_with_the_pressure(alpha: float) -> None:
-    """As the asymptote, which is approached as 1/h^2."""
+    """The area approaches the asymptote as 1/h^2."""
     surface = {"separation": np.array([8.0, 16.0, 32.0]), "effective_modulus": 3.0, "m0": 1.0, "m2": 1.0, "m4": alpha}
     pressure = rm.theory.bush_gibson_thomas(**surface)
     area = rm.theory.bush_gibson_thomas(variable="contact_fraction", **surface)

@@ -23,7 +23,7 @@ def test_every_line_is_as_high_as_its_surface(hurst: float, length: float) -> No
 
 
 def test_a_long_line_is_as_steep_as_its_surface() -> None:
-    """As <|grad h|^2>, which is twice that of a profile."""
+    """Its slope is <|grad h|^2>, which is twice that of a profile."""
     z = rm.theory.line_heights(spectrum=WAVES, length=1e-2, points=200_000, seed=0)
     steep = np.mean((np.diff(z, append=z[0]) / 5e-8) ** 2)
     assert steep == pytest.approx(WAVES.rms_slope**2, rel=3e-3)

@@ -19,8 +19,8 @@ from roughmdr.shapes import Shape
 from roughmdr.shapes.power_profiles import profile_of
 from roughmdr.shapes.profile import Profile
 
-_ROUNDING = 1e-12  # of the slope at the edge: a smaller slope of the tip, or jump, is rounding
-_DEPTH_MIN, _DEPTH_MAX, _STEPS_PER_DECADE = 1e-6, 10.0, 8  # of the search for the largest shear, over a radius
+_ROUNDING = 1e-12  # slope of the tip or jump of slope, over the slope at the edge, below which it is a rounding error
+_DEPTH_MIN, _DEPTH_MAX, _STEPS_PER_DECADE = 1e-6, 10.0, 8  # depths, over a radius, at which the largest shear is sought
 _POWER = {PRESSURE: 1, DISPLACEMENT: 0, STEEP: 1, DEEP: 1, STEEP_TURN: 2, DEEP_TURN: 2}
 """The power of a length that a weight is divided by."""
 

@@ -73,13 +73,13 @@ kernel = FieldKernels("kernel")
 _NODES, _WEIGHTS = gauss(20)
 _TAIL = last_coefficients(20)
 _LONGEST_PANEL = 2.0
-_ROUGH = 1e-10  # of the integral: last coefficients of this size change it by their square
-_NEGLIGIBLE = 1e-18  # of the integral
+_ROUGH = 1e-10  # last coefficients of a fine panel, over the integral: its error is about their square
+_NEGLIGIBLE = 1e-18  # magnitude of a panel, over the integral, that is lost in rounding
 _MAX_PANELS = 20000
-_TIP = 1e-12  # of the integral: error of the power law that stands for the last part of the tip
+_TIP = 1e-12  # error, over the integral, of the power law that replaces the profile next to the tip
 _LOWEST = -700.0  # e^-700 is a float
 _LINEAR = 1e-13
-_COARSE = 1e-10  # of t: what the rounding of a radius may change it by
+_COARSE = 1e-10  # largest relative change of t by the rounding of a radius
 _EPSILON = float(np.finfo(np.float64).eps)
 
 

@@ -33,7 +33,7 @@ least 0.3 apart 0.58, 0.4 0.62, 0.5 0.68, 0.6 0.74, 0.65 0.77, 0.75 0.83. So 0.5
 spectra lie farther apart; those of wide ones come in clusters on the long waves. One summit in ten of the maps has a
 nearer neighbour than 0.5 at alpha 2.7, one in three at 12.
 """
-_STREAMS = (HEIGHT, PARAMETER, PARAMETER + 1)  # of the heights, the mean curvatures and the products of the curvatures
+_STREAMS = (HEIGHT, PARAMETER, PARAMETER + 1)  # for height, mean curvature and product of the curvatures
 
 
 class NayakAsperities(PatchSource):

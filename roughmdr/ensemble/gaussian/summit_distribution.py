@@ -26,9 +26,9 @@ from roughmdr.numerics.arguments import Floats
 from roughmdr.numerics.gauss import unit_gauss
 from roughmdr.spectrum import MIN_ALPHA, Moments
 
-_TAIL_WIDTH = 12.0  # in sqrt(v): a negligible fraction lies farther above
+_TAIL_WIDTH = 12.0  # distance [sqrt(v)] above which a negligible fraction of the summits lies
 _NORMAL = Distribution("norm", (), 0.0, 1.0)
-_NORM = math.sqrt(6.0 / math.pi)  # of the density of S
+_NORM = math.sqrt(6.0 / math.pi)  # factor of the density of S
 _SMALL_V = 0.5  # v up to which v - 1 + exp(-v) is summed as a series, since the difference cancels
 _SMALL_S = 1.0  # likewise for the fraction below S
 _EXCESS = [(-1.0) ** k / math.factorial(k) for k in range(2, 17)]

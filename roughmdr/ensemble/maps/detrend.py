@@ -12,7 +12,7 @@ from roughmdr.numerics.arguments import Floats
 Trend = Literal["none", "mean", "plane", "quadratic"]
 _DEGREE: dict[Trend, int] = {"mean": 0, "plane": 1, "quadratic": 2}
 
-_KERNEL_WIDTH = 1.5  # of the Gaussian, in cut-offs; beyond, it is about 1e-14 of its height
+_KERNEL_WIDTH = 1.5  # half width of the Gaussian [cut-off]: it has fallen to about 1e-14 of its height there
 _CUTOFF_RTOL = 1e-9  # a wave as long as the cut-off is kept
 
 

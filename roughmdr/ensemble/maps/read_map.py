@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
 _INSTRUMENT_SUFFIXES = (".h5", ".hdf5", ".datx")  # begin as a netCDF file does
-_SIZE_ARRAY = "size"  # in a .npz file
+_SIZE_ARRAY = "size"  # name of the array with the size of the map in a .npz file
 _MAX_UNEVENNESS = 1e-3  # relative variation of the spacing of a regular grid
 
 

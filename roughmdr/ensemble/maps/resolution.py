@@ -26,7 +26,7 @@ MAX_SUMMITS_ERROR = FORCE_PER_RADIUS * MAX_UNCERTAINTY
 # are self-affine, misfit 9/points to 15/points. A misfit above that is due to noise.
 _FEWEST_PER_MISFIT = 6.0
 _USUAL_PER_MISFIT = 12.0
-_MISFIT_OF_NOISE = 1.07  # of maps that are nothing but white noise, with 9.5 points a summit
+_MISFIT_OF_NOISE = 1.07  # misfit of maps that are white noise alone, which have 9.5 points a summit
 _MAX_NOISE = 0.99  # share of the squared curvature above which no map tells how much is noise
 
 MAX_HILLS_ERROR = 0.05

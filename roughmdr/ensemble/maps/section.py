@@ -21,7 +21,7 @@ from roughmdr.errors import RoughmdrError, SceneError
 from roughmdr.schema.quantities import Length
 from roughmdr.schema.units import unit_factor
 
-_ROUNDING = 64 * np.finfo(float).eps  # of the largest height: rounding errors of a trend that is removed
+_ROUNDING = 64 * np.finfo(float).eps  # rounding error of heights after a trend was removed, over the largest height
 _UNCUT = ("rms_height", "rms_slope", "mean_curvature_radius")
 """Attributes of an ensemble that tell of its map as it was before the cutoff, too."""
 

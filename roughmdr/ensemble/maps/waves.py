@@ -8,7 +8,7 @@ from roughmdr.ensemble.maps.height_map import HeightMap, blocks, map_statistics,
 from roughmdr.numerics.arguments import Floats
 from roughmdr.spectrum import MapSpectrum, Moments
 
-_BINS = 400  # of the wave number, by its logarithm
+_BINS = 400  # number of bins of the wave number, equal on a logarithmic scale
 
 
 class MapWaves(NamedTuple):

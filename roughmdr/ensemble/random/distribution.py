@@ -13,7 +13,7 @@ from roughmdr.numerics.arguments import Floats
 # Normal scores of the trapezoidal rule that integrates the moments of a truncated distribution.
 _SCORES, _SCORE_STEP = np.linspace(-37.0, 37.0, 2369, retstep=True)
 _FAR_SCORE, _NEGLIGIBLE = 8.0, 1e-14  # values beyond this score are checked unless negligible in the mean of cubes
-_MEAN_ERROR = 1e-9  # of the standard deviation: scipy integrates some means to no more digits
+_MEAN_ERROR = 1e-9  # error of a mean over the standard deviation: scipy integrates some to no more digits
 _DRAW_SCORES = np.arange(-8.0, 9.0)  # normal scores as far as draws reach
 _BROAD = 0.2  # change of log(value) in one normal score up to which a few draws show the spread of forces
 _LONG_TAIL = 15.0  # distance of score 8 from the median over that of score 2: 4 where normal, 11 where exponential

@@ -12,10 +12,10 @@ from roughmdr.schema.quantities import EntryError, Quantity
 from roughmdr.schema.units import DIMENSIONLESS, format_quantity, quantity
 from roughmdr.schema.wording import close_matches
 
-COMMON = ("loc", "scale", "mean", "std", "min", "max")  # of every family, in the unit of the quantity
+COMMON = ("loc", "scale", "mean", "std", "min", "max")  # parameters of every family, in the unit of the quantity
 _LOCATION = ("loc", "mean", "std")  # any of these determines it: std together with the default mean
-_MIN_FRACTION = 1e-200  # that a truncated distribution keeps: less has no digits left
-_MIN_PARAMETER, _MAX_PARAMETER = 1e-12, 1e12  # of a family: far beyond, scipy can crash the whole process
+_MIN_FRACTION = 1e-200  # least probability that a truncated distribution keeps: less has no digits left
+_MIN_PARAMETER, _MAX_PARAMETER = 1e-12, 1e12  # limits of a parameter's magnitude: far beyond, scipy can crash
 
 
 def definition_of(dimension: str) -> str:

@@ -10,7 +10,7 @@ from roughmdr.ensemble.random.distribution_families import ndtr, ndtri
 from roughmdr.ensemble.streams import HEIGHT, POPULATION, SMALLEST_UNIFORM, Streams
 from roughmdr.numerics.arguments import Floats
 
-_COMBINATIONS = 729  # of shape parameters between their tails: 3^6, so that up to three are at odd numbers of values
+_COMBINATIONS = 729  # combinations of shape parameters between their tails: 3^6, odd numbers of values for up to three
 
 
 @dataclass(frozen=True)

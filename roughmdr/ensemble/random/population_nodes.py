@@ -18,10 +18,10 @@ _HEAVY_TAIL_ENDS = (12.0, 14.0, 17.0, 20.0, 24.0, 28.0, 32.0, 37.0)
 _BULK = 3.0  # normal scores between which most heights lie: 99.7 %
 _QUARTILE = 0.6745  # normal score of the upper quartile
 _MAX_FORCE_EXPONENT = 3.0  # forces grow as indentation^(1 + 1/n), n > 1/2
-_NEGLIGIBLE_FORCE = 1e-16  # of the force that the bulk bears
-_NEXT_TO_LOC = 1e-14  # of the scale
+_NEGLIGIBLE_FORCE = 1e-16  # force of the heights above a score, over that of the bulk, that is lost in rounding
+_NEXT_TO_LOC = 1e-14  # distance of a height from loc, over the scale, below which it counts as loc
 _RESOLUTION = 2.0**-48  # smallest width of the heights, over a height or over the scale
-_MAX_HEIGHT = 1e100  # of the scale: higher ones are not integrated
+_MAX_HEIGHT = 1e100  # largest height over the scale that is integrated
 
 
 def heights_of(distribution: Distribution) -> Heights:

@@ -22,7 +22,7 @@ from roughmdr.spectrum import Moments, SelfAffine
 
 _LARGEST_MAP = 8192  # points along a side
 _MARGIN = 1.02  # points over twice the waves along a side, at least
-_ROUNDING = 1e-13  # of the r.m.s. height: of the transform
+_ROUNDING = 1e-13  # rounding error of the Fourier transform, over the r.m.s. height
 
 
 class SpectrumAsperities(Source):

@@ -9,7 +9,7 @@ from roughmdr.numerics.double_double import ROUNDING, Pair, two_product
 from roughmdr.numerics.jit import njit
 from roughmdr.shapes.kappa import kappa
 
-_KERNEL_ERROR = 1e-13  # of the force, as tested
+_KERNEL_ERROR = 1e-13  # relative error of the force, as tested
 _STEEP = 20.0  # (1e-15)^20 is still a normal float
 
 

@@ -21,7 +21,7 @@ from roughmdr.numerics.vector_math import expm1, log, log1p
 from roughmdr.shapes.kappa import precise_kappa
 
 _LOG_LARGEST = 690.0  # e^690 = 1e299: a little inside the range of a float
-_KERNEL_ERROR = 1e-13  # of the force over its terms, as tested
+_KERNEL_ERROR = 1e-13  # error of the force over the sum of its terms, as tested
 refinements = 2
 _expm1, _log, _log1p = (compiled(part, small=True) for part in (expm1, log, log1p))
 _vector = partial(njit, small=True)

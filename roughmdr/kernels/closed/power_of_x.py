@@ -14,7 +14,7 @@ from roughmdr.numerics.vector_math import LOG_2_HIGH, LOG_2_LOW, power_and_log, 
 
 _SMALLEST_NORMAL = float(np.finfo(np.float64).tiny)
 _RAISED_BY, _RAISED = 54.0, 2.0**54  # makes all floats normal
-_LOG_MAX, _LOG_MIN = 709.0, -708.0  # of normal floats
+_LOG_MAX, _LOG_MIN = 709.0, -708.0  # natural logarithms of the largest and the smallest normal float
 _power_and_log, _scale_and_growth = (compiled(part, small=True) for part in (power_and_log, scale_and_growth))
 _vector = partial(njit, small=True)
 

@@ -30,11 +30,11 @@ from roughmdr.numerics.vector_math import atan
 
 _atan = compiled(atan, small=True)
 
-_RTOL_STEP = 3e-8  # of the distance to the foot and of m: the next error, its square, is below rounding
-_ROUNDINGS = 4e-16  # of m, which no step need be smaller than
+_RTOL_STEP = 3e-8  # last step over the distance to the foot, and of m: the next error, its square, is below rounding
+_ROUNDINGS = 4e-16  # step of m, over m, that is always the last
 _MAX_STEPS = 12
-_MIN_SHARE = 1e-2  # of the distance to the foot and of m: left after a step that would go beyond 0
-_MOST_GROWTH = 10.0  # of m in a step
+_MIN_SHARE = 1e-2  # share of the distance to the foot, and of m, that is left after a step that would go beyond 0
+_MOST_GROWTH = 10.0  # largest factor of m in a step
 
 
 def newton_of_both(s: float, m: float, wanted: float, params: Floats) -> tuple[float, float, float, float]:
@@ -59,7 +59,7 @@ def newton_of_both(s: float, m: float, wanted: float, params: Floats) -> tuple[f
 
 
 def newton_at_end(s: float, m: float, wanted: float, params: Floats) -> tuple[float, float, float, float]:
-    """As ``newton_of_both`` where the zone stays at the end of the profile; NaN where it does not."""
+    """Do as ``newton_of_both`` where the zone stays at the end of the profile; NaN where it does not."""
     t, a, g, da, dg = kernel.contact_edge(s, params)
     widest = kernel.widest_zone(a)
     if kernel.gap_at(t, a, g, widest, params)[0] > 0.5 * math.pi * params[RANGE]:

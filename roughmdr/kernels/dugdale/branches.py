@@ -17,7 +17,7 @@ _THIN_ZONE = 0.1  # m/a: with a thinner zone a contact is as in JKR, and has no 
 _LARGEST = 1e140  # its square is a float
 _RTOL = 4e-16
 _MAX_ITERATIONS = 200
-_NEAR_END = 1.0 - 1e-9  # of the end of the profile: beyond, c and a are the same float
+_NEAR_END = 1.0 - 1e-9  # largest a, over the end of the profile: beyond, c and a are the same float
 
 
 def next_trial(s: float, params: Floats) -> float:

@@ -16,7 +16,7 @@ from roughmdr.numerics.vector_math import binade_cell
 
 _cell = compiled(binade_cell, small=True)
 
-_MOST_LOG = 300.0  # of the growth of a guess
+_MOST_LOG = 300.0  # largest logarithm of the growth of a guess, which must not overflow
 
 
 def guess_both(x: float, params: Floats) -> tuple[float, float]:

@@ -23,8 +23,8 @@ from roughmdr.kernels.profile.layout import CONTROL, COUNT, DEPTH, JUNCTION, RAN
 from roughmdr.numerics.arguments import Floats
 from roughmdr.numerics.double_double import ROUNDING
 
-_ZONE_ERROR = 1e-12  # of the force, as tested
-_ZONE_ROUNDINGS = 32.0  # of the part of the indentation that the zone takes
+_ZONE_ERROR = 1e-12  # relative error of the force, as tested
+_ZONE_ROUNDINGS = 32.0  # roundings of the indentation by the zone, over the part that it adds
 
 
 def state_along(s: float, params: Floats) -> tuple[float, float, float, float, float]:
@@ -41,7 +41,7 @@ def state_along(s: float, params: Floats) -> tuple[float, float, float, float, f
 
 
 def state_between(edges: tuple[float, ...], params: Floats) -> tuple[float, float, float, float, float]:
-    """As ``state_along`` from both edges, s > 1, as ``zone_edge`` returns them."""
+    """Do as ``state_along``, given both edges, s > 1, from ``zone_edge``."""
     beta = params[STRENGTH]
     t, a, m, theta, g, da, dg = edges
     _, k = kernel.gap_integrals(t, a, g, m, theta, params)

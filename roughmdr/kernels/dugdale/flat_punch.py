@@ -19,8 +19,8 @@ from roughmdr.numerics.jit import compiled, njit
 
 scales, force_scales = compiled(scales_of_row), compiled(force_scales_of_row)
 params_of = njit(params_of_row, inline=True)
-_KERNEL_ERROR = 1e-12  # of the force, as tested
-_MAX_DEPTH = 2.0**26  # over beta: of a larger depth the roundings would be more than 1e-12 of a closing contact
+_KERNEL_ERROR = 1e-12  # relative error of the force, as tested
+_MAX_DEPTH = 2.0**26  # largest depth over beta: beyond, roundings are more than 1e-12 of a closing contact
 
 
 @njit

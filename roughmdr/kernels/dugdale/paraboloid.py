@@ -38,7 +38,7 @@ def zone_edge(s: float, params: Floats) -> tuple[float, float, float, float, flo
 
 
 def zone_edge_near(s: float, near: float, params: Floats) -> tuple[float, float, float, float, float, float, float]:
-    """As ``zone_edge``, which needs no place to begin at."""
+    """Do as ``zone_edge``, which needs no first guess."""
     return kernel.zone_edge(s, params)
 
 

@@ -21,14 +21,14 @@ from roughmdr.numerics.gauss import unit_gauss
 # Nodes of Gauss from 0 to 1, packed towards both ends, where g may be no more than a root or a logarithm.
 _Z, _WEIGHT = unit_gauss(40)
 _NODES = _Z**3 * (10.0 - 15.0 * _Z + 6.0 * _Z**2)
-_PANEL_RATIO = 8.0  # of the ends of a panel, at most
+_PANEL_RATIO = 8.0  # largest ratio of the ends of a panel
 _THIN = 0.01  # m/a: in a thinner zone g(x) - g(a) has too few digits
 _STEEP = 6.0  # _STEEP/sqrt(n) is the psi at which (x/c)^n is below rounding
 _NEAREST = 1e-8  # distance to the end of the profile, over it; its square is below rounding
-_BEFORE = 1.0 - 2.0**-53  # of the end of the profile: up to there g is finite
+_BEFORE = 1.0 - 2.0**-53  # largest radius over the end of the profile: up to there g is finite
 _UNBOUNDED = 1e100  # stands for infinity
 _FEW_NODES, _FEW_WEIGHTS = unit_gauss(8)
-_FEW_DIGITS = 1e-6  # of g(a) theta: a smaller difference to it has no ten digits
+_FEW_DIGITS = 1e-6  # difference from g(a) theta, over it, below which it has fewer than ten digits
 _WEIGHTS = 30.0 * _Z**2 * (1.0 - _Z) ** 2 * _WEIGHT
 _PIECE_NODES, _PIECE_WEIGHTS = unit_gauss(12)  # for a piece of a table, on which g is a polynomial in q
 

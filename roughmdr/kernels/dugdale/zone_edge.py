@@ -14,7 +14,7 @@ _atan = compiled(atan, small=True)
 
 _RTOL_STEP = 1e-9  # its square is below rounding
 _WIDE = 0.5 * math.pi - 1.0  # m theta - c + a over m where a is small
-_LEAST_SHARE = 1e-2  # of m, left after a step
+_LEAST_SHARE = 1e-2  # least share of m that is left after a step
 _NEXT_TO_AXIS = 0.3  # a over the cohesive radius where contact begins
 _ROUNDING = 1e-15
 _MAX_ITERATIONS = 100
@@ -125,7 +125,7 @@ def zone_edge(s: float, params: Floats) -> tuple[float, float, float, float, flo
 
 
 def zone_edge_near(s: float, near: float, params: Floats) -> tuple[float, float, float, float, float, float, float]:
-    """As ``zone_edge``, where m is about ``near``, or 0 where that is not known."""
+    """Do as ``zone_edge``, with ``near`` as a first guess of m; 0 for none."""
     t, a, g, da, dg = kernel.contact_edge(s, params)
     m = kernel.zone_width(t, a, g, dg / da if da > 0.0 else math.inf, near, params)
     return t, a, m, _atan(m / a), g, da, dg

@@ -13,7 +13,7 @@ from roughmdr.kernels.profile.interface import kernel
 from roughmdr.numerics.arguments import Floats
 
 _PER_DEPTH = 2.0**28  # the octaves begin at its inverse of the depth
-_REACH = 2.0**15  # times the step: a kink within it, where g may go as the power 3/2, makes the error larger
+_REACH = 2.0**15  # distance, over the step, within which a kink makes the error larger: g may go as the power 3/2 there
 
 
 def prepare(material: Material, columns: Columns, start: int, stop: int, control: float, deepest: float) -> Floats:

@@ -19,11 +19,11 @@ _octave = compiled(binade_cell, small=True)
 
 _PER_DEPTH = 2.0**12  # without adhesion the octaves begin at its inverse of the depth
 _FINE = 4.0  # factor on the root in y: the larger, the more octaves next to the foot
-_MAX_ERROR = 1e-4  # of the distance to the foot: with a larger one a node is solved for by itself
+_MAX_ERROR = 1e-4  # error over the distance to the foot above which a node is solved for by itself
 _BEYOND = 2  # nodes: one at the end of its part, one as a rounding can lead into the next
-_STEPS = 8  # of Newton's method before that
-_CORNER = 1e-6  # of the depth over the foot: a steeper foot is a corner, not a fold
-_BEND = 1e-4  # of the foot: so far from a fold the slope is linear
+_STEPS = 8  # steps of Newton's method for all rows together before that
+_CORNER = 1e-6  # slope of the control at a foot, over depth/foot, above which it is a corner, not a fold
+_BEND = 1e-4  # distance from a fold, over its state, within which the slope is linear
 
 
 def y_of_x(x: float, params: Floats) -> float:

@@ -13,7 +13,7 @@ class ProfileKernels(Kernels):
     """Kernels of a shape that is known by its profile."""
 
     mdr_profile: Callable[..., tuple[float, float, float, float]]
-    """As in ``shapes.profile.Profile``, and so what follows down to ``t_of_q``."""
+    """Described in ``shapes.profile.Profile``, with all names down to ``t_of_q``."""
     reduced_load: Kernel
     t_of_radius: Kernel
     f_and_slope: Callable[..., tuple[float, float]]
@@ -50,12 +50,12 @@ class ProfileKernels(Kernels):
     control_above_fold: Callable[..., tuple[float, float]]
     solve_on_branch: Kernel
     octaves: int
-    """Of the initial guess."""
+    """Number of octaves of y that the table of initial guesses covers."""
     newton_step: Callable[..., tuple[float, float, float]]
     split: int
-    """Times an octave of the initial guess is halved."""
+    """Number of times each of them is halved."""
     first_node: int
-    """The place in a row of the first node of the initial guess."""
+    """Index in a row of the first node of that table."""
     node_size: int
     """How many numbers a node has."""
     y_over_part: Callable[[int], float]

@@ -6,7 +6,7 @@ Under adhesion with a range the state is s (``dugdale.equilibrium``) in place of
 """
 
 MAX_BRANCHES = 8
-CANCELLED = 1e-4  # of the depth: nearer to a foot at t = 0, the corner of a flat, four digits are lost
+CANCELLED = 1e-4  # distance from a foot at t = 0, over the depth, within which four digits are lost
 
 # Indices from the end of a row: the parameters of the shape stand at its beginning. What a visit reads is on one cache
 # line or two.
@@ -14,9 +14,9 @@ TENSION = -1
 DEPTH = -2  # distance of the lowest foot below first touch, in the controlled quantity; 1 without adhesion
 COUNT = -3  # number of stable branches; 0 where they are too many, or not representable
 LAST, LAST_X = -4, -5  # the foot of the last branch: its t and its x, the distance to the lowest foot over DEPTH
-NEAR = -6  # of t: nearer than this to a foot the slope is integrated, as the difference of values is less precise
-NUMBER = -7  # what tells shapes of one kind apart, besides width and rise: the first of the row once more
-ROUNDINGS = -8  # as ``shapes.profile.Profile.roundings``
+NEAR = -6  # distance from a foot, over t, within which the slope is integrated: a difference of values is less precise
+NUMBER = -7  # shape parameter, e.g. the exponent n (a copy of params[0])
+ROUNDINGS = -8  # number of roundings of g, from ``shapes.profile.Profile.roundings``
 CONTROL = -9  # 0: fixed grips, 1: dead load
 FOLD = -10  # t of the lowest foot
 ONSET = -11  # the x at which contact, or attraction, begins when the surfaces approach

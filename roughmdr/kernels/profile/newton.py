@@ -10,10 +10,10 @@ from roughmdr.numerics.arguments import Floats
 _INNER, _OUTER = (math.sqrt(5.0 - sign * 2.0 * math.sqrt(10.0 / 7.0)) / 6.0 for sign in (1.0, -1.0))
 _MIDDLE = 64.0 / 225.0
 _INNER_WEIGHT, _OUTER_WEIGHT = ((322.0 + sign * 13.0 * math.sqrt(70.0)) / 1800.0 for sign in (1.0, -1.0))
-_RTOL_STEP = 1e-8  # of the distance to the foot and of the value: the next error, its square, is below rounding
-_RTOL = 1e-16  # of the distance to the foot
-_REACH = 64.0  # times the first step: a kink within it makes the error larger than stated
-_MIN_DISTANCE = 1e-3  # of the distance to the foot: left after a step that would go beyond it
+_RTOL_STEP = 1e-8  # last step over the distance to the foot, and of the value: the error left is its square
+_RTOL = 1e-16  # error of a converged state, over its distance to the foot
+_REACH = 64.0  # distance, over the first step, within which a kink makes the error larger than stated
+_MIN_DISTANCE = 1e-3  # share of the distance to the foot that is left after a step that would go beyond it
 _FREE_STEPS = 6  # then every third step is a bisection: where the slope changes much, Newton's method may not converge
 
 
@@ -86,7 +86,7 @@ def one_step(t: float, x: float, params: Floats) -> tuple[float, float, float]:
 
 
 def two_steps(t: float, x: float, params: Floats) -> tuple[float, float, float]:
-    """As ``one_step`` after two, the second on the cubic that the inverse function and its slopes at both points give.
+    """Take two steps: ``one_step``, and one on the cubic that the inverse function and its slopes at both points give.
 
     Its error is about the product of the squares of the distances from both; inf where there is a kink near.
     """

@@ -10,7 +10,7 @@ from roughmdr.kernels.profile.layout import first_node
 
 OCTAVES, OCTAVES_OF_SIMILAR = 24, 40
 OCTAVES_OF_EDGES = 14  # a node costs as much as two visits
-_SPLIT = 6  # times an octave of the initial guess is halved where all asperities share one row
+_SPLIT = 6  # halvings of an octave of the initial guess where all asperities share one row
 VECTOR_CODE: set[Callable[..., Any]] = {
     equilibrium.indentation_at,
     equilibrium.radius_force_stiffness,

@@ -13,13 +13,13 @@ from roughmdr.numerics.arguments import Floats
 from roughmdr.numerics.jit import njit
 from roughmdr.stages.curved.local_law import LocalLaw
 
-_RTOL_STEP = 1e-9  # of the scale of the layer: Newton's method then doubles these digits in its last step
-_ROUNDINGS = 64.0 * float(np.finfo(float).eps)  # of the separations
+_RTOL_STEP = 1e-9  # last step over the scale of the layer: Newton's method doubles these digits
+_ROUNDINGS = 64.0 * float(np.finfo(float).eps)  # rounding error of a step, over the separations
 _MAX_STEPS, _MAX_HALVINGS = 60, 12
 _MAX_DAMPED = 2000
-_FIRST_DURATION, _GROWTH = 1.0, 2.0  # of a damped step, over the time in which a ring alone comes to rest
-_SHORT, _LONG = 1e-12, 1e3  # of these durations: no progress, and hardly any damping
-_NEARLY_LINEAR = 0.25  # of the residual: how far a damped step may miss its linear prediction
+_FIRST_DURATION, _GROWTH = 1.0, 2.0  # first duration of a damped step over the time constant of a ring alone; growth
+_SHORT, _LONG = 1e-12, 1e3  # such durations at which a search ends: no progress, and hardly any damping
+_NEARLY_LINEAR = 0.25  # allowed error of the linear prediction of a damped step, over the residual
 
 
 class Half(NamedTuple):

@@ -19,7 +19,7 @@ from roughmdr.stages.curved.follow import Body, Place
 from roughmdr.stages.curved.local_law import LocalLaw
 from roughmdr.stages.curved.refine import Layer, Solution, solve
 
-_MAX_ERROR = 0.1  # of the largest force: a larger error is refused
+_MAX_ERROR = 0.1  # largest numerical error over the largest force: beyond, the law is refused
 _FEW = 10  # contacts, of whose number the standard deviation is a third
 _OF_LAYER = ("model_error_curve",)
 """Variables that are those of the layer where it is pressed most."""

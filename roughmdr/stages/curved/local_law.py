@@ -24,8 +24,8 @@ from roughmdr.numerics.jit import njit
 
 ROWS = (FORCE, STIFFNESS, AREA, COUNT, RADIUS)
 """Rows of the totals that the nodes have tables of, in this order."""
-_OF_SLOPE = 2  # of them, the first
-_RTOL_TABLE, _NARROWEST = 1e-11, 1e-7  # of the largest value on a piece; of the scale of the layer
+_OF_SLOPE = 2  # number of these rows, from the first, that are computed where the slope alone is asked for
+_RTOL_TABLE, _NARROWEST = 1e-11, 1e-7  # error over the largest value on a piece; narrowest piece over the scale
 
 
 class LocalLaw(NamedTuple):

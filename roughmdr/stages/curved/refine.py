@@ -22,14 +22,14 @@ from roughmdr.stages.curved.local_law import ROWS, LocalLaw
 from roughmdr.stages.curved.rings import Rings
 
 _FIRST_ELEMENTS, _GRADING = 16, 1.5  # equal steps of radius^(1/grading): a light contact is small
-_AT_AN_END = 1e-6  # of the last ring: a kink so close to the axis or to the last ring is of no account
+_AT_AN_END = 1e-6  # distance of a negligible kink from the axis or the last ring, over the last radius
 _MAX_ELEMENTS = 256  # with more of them a step takes a second
 _MAX_PASSES = 16
-_RULE_STEPS = 32  # of a path over all separations, for which the rule over the shape parameters is chosen
+_RULE_STEPS = 32  # steps of the path for which the rule over the shape parameters is chosen
 _ROWS_OF_RULE = tuple(sorted(ROWS, key=lambda row: row == STIFFNESS))  # which is not judged, and so the last
 _DEEPER, _WIDER = 2.0, 1.25  # factors by which tables reach deeper, and rings farther out, where they do not suffice
 _MAX_TRIALS = 60
-_NO_PRESSURE = 1e-12  # of the largest
+_NO_PRESSURE = 1e-12  # pressure over the largest that counts as none
 
 
 class Layer(NamedTuple):

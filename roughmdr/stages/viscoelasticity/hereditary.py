@@ -17,11 +17,11 @@ from numpy.typing import NDArray
 from roughmdr.numerics.arguments import Floats
 from roughmdr.numerics.gauss import unit_gauss
 
-_DEGREE = 8  # of the polynomials; even, so that the halves of a panel share its points
-_HALVINGS, _HALVINGS_BELOW = 30, 6  # of the panels towards first touch, and towards the deepest point
+_DEGREE = 8  # degree of the polynomials; even, so that the halves of a panel share its points
+_HALVINGS, _HALVINGS_BELOW = 30, 6  # halvings of the panels towards first touch, and towards the deepest point
 _REACH, _NODES = 40.0, 20  # memory lengths that are looked back, exp(-40) = 4e-18; Gauss points for these
-_BLOCK = 4096  # of them for so many integrals are in memory at a time
-_FINE, _COARSE = 1e-12, 1e-9  # of the largest force: errors that are aimed at, with few separations and with more
+_BLOCK = 4096  # integrals whose points are in memory at a time
+_FINE, _COARSE = 1e-12, 1e-9  # errors aimed at, over the largest force, with few separations and with more
 _FEW, _MOST, _MOST_PER_STEP = 1024, 8192, 4  # separations
 _SLOPE = 2.0 * _DEGREE  # largest slope of an interpolation error, over that error and the width of its panel
 _LEAST_WIDTH = 64.0  # roundings of a separation

@@ -13,7 +13,7 @@ class Contacts(NamedTuple):
     """Contacts of a viscoelastic body: those of loading at an earlier time."""
 
     separation: Floats
-    """Of the flat at that time [m]."""
+    """Separation of the flat at that time [m]."""
     age: Floats
     """Time since then [s]."""
 

@@ -7,7 +7,7 @@ import numpy as np
 
 from roughmdr.numerics.arguments import Floats
 
-_RTOL = 2.0**-51  # of a duration, two roundings
+_RTOL = 2.0**-51  # relative difference of equal durations: two roundings
 
 
 class Relaxation(NamedTuple):

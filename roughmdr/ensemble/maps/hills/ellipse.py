@@ -16,12 +16,12 @@ from roughmdr.numerics.gauss import unit_gauss
 from roughmdr.numerics.jit import njit
 
 MAX_ELONGATION = 0.9
-"""Of an ellipse, q: half the logarithm of the ratio of its axes. Beyond, a ridge is more than one contact."""
+"""Largest q of an ellipse, half the logarithm of the ratio of its axes: a longer ridge is more than one contact."""
 MAX_DRIFT = 0.2
 """How far the centre of a contact may lie from the summit [wavelength]: farther away it is another hill's."""
 _ANGLES = 12
 _NODES, _WEIGHTS = unit_gauss(5)
-_RINGS = np.sqrt((1.0 - _NODES) * (1.0 + _NODES))  # at equal shares of the load of a punch
+_RINGS = np.sqrt((1.0 - _NODES) * (1.0 + _NODES))  # radii [1] of rings with equal shares of the load of a punch
 _SWEEPS = 2
 _FIRST_STEPS = np.array([0.2, 0.2, 0.15, 0.15])
 

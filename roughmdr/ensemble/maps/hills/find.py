@@ -20,10 +20,10 @@ from roughmdr.numerics.jit import njit
 from roughmdr.shapes.mdr_table.shape import rising
 
 _WAVELENGTH = 6.6
-"""Of the ratio of r.m.s. slope to r.m.s. Laplacian, which is wavelength/(2 pi) where all waves are equally long: 5 %
-more than 2 pi, as the sizes below were tuned with it (``pipelines/hills.py``)."""
+"""Wavelength over the ratio of r.m.s. slope to r.m.s. Laplacian: 2 pi where all waves are equally long, and 5 % more
+here, as the sizes below were tuned with it (``pipelines/hills.py``)."""
 SCALES = 20
-"""Contact radii of a hill, unless told: 1.18 from one to the next."""
+"""Default number of contact radii in the table of a hill: each is 1.18 times the one before."""
 SMALLEST, LARGEST = 0.04, 1.0
 """The first and the last of them, in wavelengths."""
 MIDDLE = 0.14
@@ -36,15 +36,15 @@ class Hills(NamedTuple):
     """Hills, one each for the summits of a map."""
 
     height: Floats
-    """Of their tops [m]."""
+    """Heights of their tops [m]."""
     g: Floats
-    """[hill, point], [m]."""
+    """MDR profile g [m], [hill, point]."""
     moved: Floats
-    """From the summit to the centre of the contact of ``MIDDLE`` size [hill, 2], in wavelengths."""
+    """Vector from the summit to the centre of the contact of radius ``MIDDLE`` [wavelength], [hill, 2]."""
     area_share: Floats
-    """Of that contact, over a circle as stiff."""
+    """Area of that contact over the circle of the same stiffness [1]."""
     kept: NDArray[np.bool_]
-    """Whether it is a hill: whether it falls from its top."""
+    """Whether each is a hill: whether it falls from its top."""
 
 
 def wavelength(surface: HeightMap) -> float:

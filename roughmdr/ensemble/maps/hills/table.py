@@ -10,7 +10,7 @@ from roughmdr.numerics.arguments import Floats
 from roughmdr.numerics.jit import njit
 
 LEAST_GROWTH = 0.4
-"""Of g from point to point, over that of a paraboloid: where the valley is in contact, the next hill begins."""
+"""Least growth of g from point to point, over that of a paraboloid; less in a valley, where the next hill begins."""
 
 
 def points_of(radius: Floats) -> Floats:

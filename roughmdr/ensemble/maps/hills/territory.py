@@ -26,7 +26,7 @@ class Spline(NamedTuple):
     """A map as a cubic spline."""
 
     coefficients: Floats
-    """Of the B-splines at the points, [x, y]."""
+    """Coefficients of the B-splines at the points [m], [x, y]."""
     spacing_x: float
     """[wavelength]."""
     spacing_y: float
@@ -43,12 +43,12 @@ class Territory(NamedTuple):
 
     map: Spline
     row: float
-    """Place of the summit between the points of the map."""
+    """Row of the summit on the map; a fraction between points, as ``column``."""
     column: float
     taken_off: Floats
-    """What is taken off along each ray, [ray, step]."""
+    """Height that is taken off along each ray [m], [ray, step]."""
     nearest_rise: Floats
-    """Distance up to which nothing is; one number."""
+    """Distance from the summit up to which nothing is taken off; an array of one number."""
 
 
 @_inlined
