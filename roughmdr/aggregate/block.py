@@ -29,9 +29,9 @@ class Block(NamedTuple):
     scales: Floats
     """Natural scales, [row, asperity] in SI."""
     max_scales: Floats
-    """The largest of each row; that of the energies only where they can be asked for."""
+    """The largest scale of each row; that of the energy is filled only where energies can be asked for."""
     contacts: Floats
-    """[row, asperity], over natural scales."""
+    """State and results of each contact over natural scales, [row, asperity]."""
 
 
 class Totals(NamedTuple):
@@ -61,7 +61,7 @@ class SumKernels(Kernels):
     guess_states: Callable[..., None]
     solve_contacts: Callable[..., None]
     radius_at: Callable[[Floats, Any, int], float]
-    """(contacts, params, i) -> a of one contact over its natural scale; the next two alike P and k."""
+    """(contacts, params, i) -> a of one contact over its natural scale; the next two return P and k."""
     force_at: Callable[[Floats, Any, int], float]
     stiffness_at: Callable[[Floats, Any, int], float]
     total_error: Callable[..., float]

@@ -86,9 +86,9 @@ def compute(problem: Problem, path: LoadingPath, variables: Iterable[str]) -> Lo
 
 
 def _overlap(ensemble: Ensemble, radius: Floats) -> float:
-    """Return the share of contacts that reach into a neighbour's, from their radii [m].
+    """Return the share of contacts that overlap a neighbour, from their radii [m].
 
-    It is NaN where it is not known, and of hills, which are parts of one surface.
+    It is NaN where it is not known, and for hills, which are parts of one surface.
     """
     if ensemble.origin == "hills":
         return math.nan

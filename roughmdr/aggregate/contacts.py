@@ -38,7 +38,7 @@ def follow_branches(count: int, block: Block, touched: float, memory: Staircase,
 
 
 def follow_either(count: int, block: Block, touched: float, memory: Staircase, begin: int, end: int) -> None:
-    """Do as ``follow_branches`` or as ``follow_pairs``, as the rows tell."""
+    """Do as ``follow_branches`` where the rows have several branches, else as ``follow_pairs``."""
     if block.params[0, BRANCHED] > 0.0:
         kernel.follow_branches(count, block, touched, memory, begin, end)
     else:
@@ -95,7 +95,7 @@ def guess_states(
 def solve_iterative(
     count: int, block: Block, h: float, adhesion_range: float, memory: Staircase, begin: int, end: int
 ) -> None:
-    """Do as ``solve_closed`` by what is the same for all contacts, as vector code, and a search for some."""
+    """Do as ``solve_closed``: equal steps for all contacts, as vector code, then a search for those that need it."""
     params, contacts = block.params, block.contacts
     state, error, in_contact, x = contacts[STATE], contacts[STATE_ERROR], contacts[IN_CONTACT], contacts[TERM]
     kernel.guess_states(count, block, h, adhesion_range, memory, begin, end)

@@ -1,4 +1,4 @@
-"""The law of asperities that feel each other in pairs, with totals as those of the sum over independent ones."""
+"""The law of asperities that feel each other in pairs, from the same totals as that of independent ones."""
 
 import math
 from collections.abc import Callable
@@ -45,12 +45,12 @@ class CoupledTotals(NamedTuple):
     radius: Floats
     """The contact radius [m] of each asperity where the flat is closest."""
     force: Floats
-    """The force [N] of each there; of contacts coupled in pairs, also where the rest is from a grid."""
+    """The force [N] of each there, from the coupling in pairs even where the totals are from a grid."""
     visits: int
     error: Floats
     """The estimated error of the force that the coupling leaves [1], over the steps."""
     conductance_error: Floats
-    """That of the conductance."""
+    """Error of the conductance by the coupling [1], over the steps."""
     overlap_count: int
     """Number of contacts that overlap a neighbour, at the closest approach with an equilibrium."""
     overlap_share: float
@@ -77,7 +77,7 @@ def law_on_machine(
 ) -> tuple[LoadSeparation, Floats]:
     """Return the law of adhesive asperities that feel each other in pairs, on a machine, and the separations [m].
 
-    Those are inf where a dead load has pulled the flat off; it is then held at ``clear`` [m], or higher.
+    Separations are inf where a dead load has pulled the flat off; the law is computed at ``clear`` [m] or higher there.
     """
     from roughmdr.interaction.jkr.machine import solve_on_machine
 
@@ -90,7 +90,7 @@ def law_on_machine(
 
 
 def _reach(problem: Problem) -> float:
-    """Return the reach of attraction that the error of hills needs; 0 of others."""
+    """Return the range of attraction that the error of hills needs; 0 for other asperities."""
     return problem.validity.reach if problem.ensemble.origin == "hills" else 0.0
 
 

@@ -17,9 +17,9 @@ class Detachments(NamedTuple):
     """Where adhesive contacts detach under fixed grips."""
 
     depth: Floats
-    """How far below first touch [m]."""
+    """Distance of detachment below first touch [m]."""
     radius: Floats
-    """Their radius there [m], where adhesion has no range; 0 where they are not representable."""
+    """Contact radius at detachment [m], where adhesion has no range; 0 where it is not representable."""
 
 
 def _fill(columns: Columns, material: Material, prepare: Callable[..., Any], found: Detachments) -> None:

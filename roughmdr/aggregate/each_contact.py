@@ -46,7 +46,7 @@ def contacts_at(problem: Problem, separation: Floats, step: int) -> EachContact:
     if problem.paired:
         return EachContact(*_coupled(problem, separation, step), problem.adhesion)
     path = turning_points(separation[: step + 1])
-    if coupling := coupling_in(problem):  # no memory: it goes without adhesion
+    if coupling := coupling_in(problem):  # the mean field is for contacts without adhesion, which have no memory
         law = compute(problem, LoadingPath.along(path[-1:], unload=False, adhesive=False), ["force"])
         path = path[-1:] + coupling * law.variables["force"]
     return EachContact(*_independent(problem, path), problem.adhesion)

@@ -1,8 +1,8 @@
-"""Contacts far from where they are made or lost: their force is so smooth that a few looks at it tell it between them.
+"""Contacts far from the separations where they are made or lost: their force is smooth, and interpolated.
 
-The highest asperities of an ensemble are summed over again at each separation that is tried, although nothing happens
-to them. At each look at all contacts the sums of force and stiffness up to every group, so many asperities in turn,
-are kept. The force of the groups that are far from any event is Hermite's polynomial through the last looks.
+A look is a separation at which all contacts were summed. A search tries many separations, at which nothing happens to
+the highest asperities. So each look keeps the sums of force and stiffness up to every group of asperities, and groups
+far from any event (a touch, a detachment) take their force from Hermite's polynomial through the last looks.
 """
 
 import math
@@ -46,7 +46,7 @@ def nothing_known(release: Floats) -> Far:
 
 @njit
 def slot_for(h: float, far: Far) -> int:
-    """Return where a look at h is kept: in place of one that is as good as there, else of the oldest."""
+    """Return the slot for a look at h: that of a look at nearly the same separation, else of the oldest."""
     count = far.number[0]
     low = high = h
     for i in range(count):

@@ -23,7 +23,7 @@ class LoadSeparation(NamedTuple):
     """The law of one ensemble along one path."""
 
     variables: dict[str, Floats]
-    """Each over the steps, in SI."""
+    """Values over the steps by name, in SI."""
     numerical_error: float
     """Bound on the error of the force along the path, over the largest magnitude of the force."""
     model_error: ModelError

@@ -77,8 +77,8 @@ class Steps(NamedTuple):
     turn: int
     """The step at which the flat is closest."""
     memory: Staircase
-    """The bottom is lower by the adhesion range, from which on the surfaces attract each other; without adhesion the
-    next float above the flat: at its height there is no contact."""
+    """Staircase of the path. Bottoms are lower by the adhesion range, where attraction begins; without adhesion they
+    are the next float above the flat, as asperities of its height do not touch."""
 
 
 @njit

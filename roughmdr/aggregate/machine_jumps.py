@@ -1,4 +1,4 @@
-"""The jumps of a flat on a machine, met one by one: where the demand turns back, and where it is passed again.
+"""The jumps of a flat on a machine, one by one: from a peak of the demand to where the demand is as large again.
 
 On the way up each detachment comes after a peak of the demand, where the stiffness of the contacts is minus that of the
 machine; a punch that lets go at once has its peak at its detachment. On the way down jumps begin at touches that pull.
@@ -30,7 +30,7 @@ def record(jumps: Jumps, step: int, demand: float, before: float, after: float) 
 def peak_before(at: Stand, end: float, search: Search) -> Stand:
     """Return the peak of the demand between a stand and the end of a smooth interval above it, or its end.
 
-    The slope falls, at last as the inverse root of the distance to the detachment: it is sought in that root.
+    The slope falls, finally as the inverse root of the distance to the detachment; so its zero is sought in that root.
     """
     if not at.h < end:
         return at

@@ -1,4 +1,4 @@
-"""The flat on a machine at one separation: what it demands there, and where it would demand something else."""
+"""The flat on a machine at one separation: its demand there, and the separation at which it has another demand."""
 
 import math
 from collections.abc import Callable
@@ -60,12 +60,12 @@ class Search(NamedTuple):
 
 
 class Jumps(NamedTuple):
-    """The jumps of a leg, and room for more; no room at all where they are not asked for."""
+    """The jumps of a leg, in arrays with room for more; arrays are empty where jumps are not asked for."""
 
     number: NDArray[np.int64]
-    """How many there are."""
+    """Number of jumps so far."""
     step: NDArray[np.int64]
-    """Before which step of the leg each is."""
+    """Step of the leg that each jump comes before."""
     limits: Floats
     """Separations [m] before and after each, [jump, 2]; inf after it where a dead load pulls off."""
     demand: Floats
@@ -85,7 +85,7 @@ def stand_at(h: float, search: Search) -> Stand:
 
 @njit
 def bent(at: Stand, before: Stand) -> Stand:
-    """Return a stand with the bend of the demand, of which nothing jumps between it and one before."""
+    """Return a stand with the bend of the demand, from it and an earlier stand without a jump between them."""
     way = at.h - before.h
     if way == 0.0:
         return at
@@ -96,7 +96,7 @@ def bent(at: Stand, before: Stand) -> Stand:
 
 @njit
 def root_from(at: Stand, target: float) -> float:
-    """Return where the demand is ``target`` by its slope and, if that is known, its bend; NaN where it falls."""
+    """Return the separation where the demand is ``target``, by its slope and, if known, its bend; NaN if it falls."""
     if not at.slope > 0.0:
         return math.nan
     way = (target - at.demand) / at.slope

@@ -19,18 +19,18 @@ _HALVINGS = 12
 
 
 def are_few(ensemble: Ensemble) -> bool:
-    """Return whether asperities are so few that they stand on a half-space that is elsewhere at rest."""
+    """Return whether asperities are few and stand on a half-space that they alone deform."""
     return ensemble.origin == "asperities" and not ensemble.goes_on and ensemble.height.size <= FEW
 
 
 def neighbours_error(
     ensemble: Ensemble, path: LoadingPath, total: Floats, radius_at: Callable[[float], Floats]
 ) -> Floats | None:
-    """Return the error of the force at each step [1]; None where the contact fraction alone tells it.
+    """Return the error of the force at each step [1]; None where it follows from the contact fraction alone.
 
     ``total`` [row, step] has the area, that of few the count as well; ``radius_at`` returns the contact radius of each
-    asperity [m] at a separation [m] that the flat has come down to. Positions tell crowds, whose force is too high;
-    else the error is that of the contact fraction. That of few is by their distances, known or expected.
+    asperity [m] at a separation [m] that the flat has come down to. Positions show crowds, whose force is too high;
+    without them the contact fraction gives the error. That of few asperities is by their distances, known or expected.
     """
     sides, few = sides_of(ensemble), are_few(ensemble)
     placed = {"x", "y"} <= ensemble.positions.keys()

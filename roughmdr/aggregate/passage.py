@@ -8,7 +8,7 @@ down it climbs at each touch that pulls. Two bounds tell how far the flat can go
 - down, contacts stiffen: it falls by less than w + c (bound of the stiffness there).
 
 Between two detachments or touches the demand is concave, so that Newton's method from below does not go beyond its
-first root. Both together meet the first root, over any number of detachments.
+first root. The bounds and Newton's method together find the first root, over any number of detachments.
 """
 
 import math
@@ -40,7 +40,7 @@ _FIRST_STEP = 2.0**-10  # least bound of a step down, over the natural depth: at
 
 @njit
 def root_below(at: Stand, target: float, touch: float, top: float, depth: float) -> float:
-    """Return where Newton's method goes down, not much deeper than contacts are already; at most to the first touch."""
+    """Return the next separation of Newton's method downward: not much deeper than contacts are, or than ``touch``."""
     root = root_from(at, target)
     root = -math.inf if math.isnan(root) else root
     if at.parted and touch > -math.inf:
@@ -90,7 +90,7 @@ def rise(at: Stand, target: float, search: Search) -> Stand:
                 return Stand(math.inf, target, 0.0, 0.0, True, math.nan, math.nan)
         tried = stand_at(after, search)
         if tried.demand > target and after - at.h > search.beside:
-            tried = root_between(at, tried, target, search)  # of the bend, or no bound
+            tried = root_between(at, tried, target, search)  # the demand bends, or its bound fails
         elif smooth:
             tried = bent(tried, at)
         stand(search.asperities)
@@ -143,10 +143,9 @@ def sink(at: Stand, target: float, search: Search) -> Stand:
 
 @njit
 def passage(at: Stand, target: float, search: Search) -> tuple[Stand, float]:
-    """Return the first stand from here, in the sense of the leg, at which the demand is ``target``; and its separation
-    [m], rounded.
+    """Return the first stand on the leg at which the demand is ``target``, and its separation [m], rounded.
 
-    It is sought among the contacts near an event, all others being taken from looks before, and then looked at.
+    Contacts near an event are evaluated in the search, all others interpolated; then all are evaluated at the root.
     """
     far, falls = search.asperities.far, search.falls
     way = _WIDE * abs(target - at.demand) / at.slope if at.slope > 0.0 else 0.0

@@ -1,4 +1,4 @@
-"""The path to a preload and back: where loading reaches the preload, and from where on no contact is left."""
+"""The path to a preload and back: the turning point at the preload, and the separation that leaves no contact."""
 
 from collections.abc import Callable
 from typing import NamedTuple
@@ -21,7 +21,7 @@ class Specimen(NamedTuple):
     """Asperities that are to be loaded to a preload."""
 
     law: Callable[[MachinePath, list[str]], LoadSeparation]
-    """(path, names of variables) -> their law, with the separation."""
+    """(path, names of variables) -> the law with these variables and the separation."""
     clear: float
     """A separation [m] at which independent asperities neither touch nor attract, and detach below."""
     depth: float
@@ -29,11 +29,11 @@ class Specimen(NamedTuple):
     area: float | None
     """The nominal area [m2]."""
     coupled: bool
-    """Whether they hold each other: then ``clear`` is where to begin to look."""
+    """Whether they are coupled: then a clear separation is sought from ``clear`` on."""
 
 
 def to_preload(path: MachinePath, specimen: Specimen) -> MachinePath:
-    """Return the path with what its machine demands at each travel.
+    """Return the path with the demand of its machine at each travel.
 
     OutOfRange where the preload is not reached, or where the contacts do not detach.
     """
@@ -47,7 +47,7 @@ def to_preload(path: MachinePath, specimen: Specimen) -> MachinePath:
 
 
 def _turning_point(path: MachinePath, specimen: Specimen) -> tuple[float, float]:
-    """Return what the machine demands at the preload [m], and the separation there [m]."""
+    """Return the demand of the machine at the preload [m], and the separation there [m]."""
     (quantity, value), machine = path.preload or ("", 0.0), path.machine
     if quantity != "contact_fraction":
         control = MachinePath.along(quantity, np.array([value]), area=specimen.area or 1.0, adhesive=path.adhesive)

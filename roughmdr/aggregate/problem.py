@@ -49,7 +49,7 @@ class Problem:
 
     @cached_property
     def validity(self) -> JkrValidity:
-        """How well JKR holds."""
+        """The limits of JKR for these asperities."""
         own = self.ensemble.shape, self.ensemble.spread, self.ensemble.columns, self.effective_modulus
         return jkr_validity(*own, self.asked_adhesion, lambda: self._detached(Adhesion(self.asked_adhesion.work)))
 
@@ -64,12 +64,12 @@ class Problem:
         return choose(self.ensemble.shape, self.adhesion, self.ensemble.columns.params)
 
     def depths(self, adhesion: Adhesion) -> Floats:
-        """Return how far below first touch each contact detaches under fixed grips [m]; found once for an adhesion."""
+        """Return the depth [m] below first touch at which each contact detaches under fixed grips, found once."""
         one = _without_range(adhesion)
         return self._depths[one] if one in self._depths else self._detached(one).depth
 
     def _detached(self, adhesion: Adhesion) -> Detachments:
-        """Return where each contact detaches, and keep the depths."""
+        """Return the detachment of each contact, and keep the depths."""
         columns = self.ensemble.columns
         kernels = choose(self.ensemble.shape, adhesion, columns.params)
         found = detachments(kernels, columns, self.effective_modulus, adhesion)
@@ -85,9 +85,9 @@ class Problem:
 
     @cached_property
     def clear(self) -> float:
-        """A separation [m] just above that at which any asperity is in contact, or attracts.
+        """A separation [m] just high enough that no asperity touches or attracts the flat, whatever the path.
 
-        There a flat that rises has left all of them. NaN where the contact of an asperity is not representable.
+        NaN where the contact of an asperity is not representable.
         """
         height = self.ensemble.height
         highest = last = float(height.max())
@@ -115,5 +115,5 @@ class Problem:
 
 
 def _without_range(adhesion: Adhesion) -> Adhesion:
-    """Return an adhesion that detaches contacts alike, JKR without the strength that it does not need."""
+    """Return the adhesion for detachment: JKR without the strength, on which it does not depend."""
     return adhesion if adhesion.cohesive else Adhesion(adhesion.work)

@@ -1,7 +1,7 @@
-"""Force and stiffness of an ensemble with the flat anywhere on a leg: what a machine feels of it.
+"""Force and stiffness of an ensemble with the flat anywhere on a leg, as a machine needs them.
 
 In contrast to the loop over all steps of a path, the next separation is not known before the force at this one is. So
-the natural scales of all asperities are kept, and found when a block is reached first.
+the natural scales of all asperities are kept; they are computed when a block is first visited.
 """
 
 import math
@@ -34,7 +34,7 @@ class Response(NamedTuple):
 
 
 class Asperities(NamedTuple):
-    """The asperities of an ensemble, with room for all that is found of them once."""
+    """The asperities of an ensemble, with room for scales and states that are kept."""
 
     height: Floats
     columns: Columns
@@ -43,17 +43,17 @@ class Asperities(NamedTuple):
     params: Any
     """Prepared parameters of all asperities, or the one row that they share."""
     scales: Floats
-    """[group, row, asperity]"""
+    """Natural scales in SI, [group, row, asperity]."""
     max_scales: Floats
-    """[group, row]"""
+    """The largest of each, [group, row]."""
     in_contact: Floats
-    """[group, asperity], where the flat stands."""
+    """Whether each is in contact, [group, asperity], with the flat where it stands."""
     tried: Floats
-    """[group, asperity], where it was tried last."""
+    """Whether each is in contact, [group, asperity], with the flat where it was tried last."""
     contacts: Floats
-    """[row, asperity] of the group that is looked at."""
+    """Contacts of the group that is evaluated, [row, asperity]."""
     ready: NDArray[np.int64]
-    """How many groups are prepared, -1 where a scale is not representable; and how many asperities were visited."""
+    """Number of groups that are prepared, -1 where a scale is not representable; and number of asperities visited."""
     far: Far
 
 
@@ -123,10 +123,9 @@ def block_at(asperities: Asperities, number: int) -> Block:
 
 
 def response(h: float, falls: bool, asperities: Asperities, memory: Memory) -> Response:
-    """Return the answer with the flat at h, directly from where it stands; NaN where a scale is not representable.
+    """Return force and stiffness at h, reached directly from where the flat is; NaN if a scale is not representable.
 
-    ``falls`` says whether the flat goes down on this leg. The first groups are taken from looks before if ``far`` says
-    so.
+    ``falls`` says whether the flat goes down on this leg. The first groups are interpolated if ``far`` says so.
     """
     count_of_pairs = memory.bottom.size
     now, reach = Staircase(memory.first, memory.bottom_now, memory.top_now), asperities.adhesion_range
@@ -179,8 +178,8 @@ def response(h: float, falls: bool, asperities: Asperities, memory: Memory) -> R
 def add_response(count: int, block: Block, modulus: float, total: Floats, compensation: Floats) -> None:
     """Add the force, the stiffness and its bound of the first ``count`` asperities of a group.
 
-    Without adhesion the stiffness is its own bound. Where that of a contact grows with its indentation it bounds
-    itself; else 2 E* a does, which only a punch of that radius has.
+    The stiffness of a contact is its own bound where it grows with the indentation, as all do without adhesion; else
+    the bound is 2 E* a, the stiffness of a punch of that radius.
     """
     params, scales, contacts = block.params, block.scales, block.contacts
     terms = contacts[TERM]

@@ -21,12 +21,12 @@ _SMALLEST, _LARGEST = np.finfo(np.float64).tiny, np.finfo(np.float64).max
 def natural_scales(block: Block, columns: Columns, start: int, material: Material) -> bool:
     """Fill the natural scales of a block that begins at ``start``; False where one is not representable.
 
-    That of the energy, the last one, is left out unless energies can be asked for.
+    The scale of the energy, the last row, is left out unless energies can be asked for.
     """
     params, scales, max_scales = block.params, block.scales, block.max_scales
     count = block.z.size
     width, rise = columns.width, columns.rise
-    for i in range(count):  # nothing but this, so that it becomes vector code
+    for i in range(count):  # a loop of its own, so that it becomes vector code
         (depth, _), size, load, rigidity = kernel.scales(
             material.effective_modulus, material.work, width[start + i], rise[start + i], kernel.params_of(params, i)
         )
@@ -42,7 +42,7 @@ def natural_scales(block: Block, columns: Columns, start: int, material: Materia
     for row in range(rows):
         max_scales[row] = 0.0
     for i in range(count):
-        for row in range(rows):  # within, as a maximum waits for that of the asperity before
+        for row in range(rows):  # the inner loop: the maximum of a row waits for that of the asperity before
             scale = scales[row, i]
             unrepresentable += not (_SMALLEST <= scale <= _LARGEST)
             max_scales[row] = scale if scale > max_scales[row] else max_scales[row]

@@ -19,13 +19,13 @@ from roughmdr.variables import LOSSES
 
 OF_MACHINE = {"separation", "remote"}
 """Variables that the machine gives."""
-_OF_ERROR = 0.1  # error of the force that is borne, over that asked for of coupled contacts
+_OF_ERROR = 0.1  # allowed error of the force of the machine, over that asked for of coupled contacts
 
 
 def simulate(problem: Problem, path: LoadingPath | MachinePath, variables: Iterable[str]) -> LoadSeparation:
     """Return the law of an ensemble along a path. Under a machine it has the separation as a variable too.
 
-    That is NaN where a dead load has pulled the flat off. Errors as ``compute``.
+    The separation is NaN where a dead load has pulled the flat off. Errors as ``compute``.
     """
     names = list(variables)
     if isinstance(path, LoadingPath):
@@ -116,9 +116,8 @@ def machine_loss(
 ) -> Floats:
     """Return the energy [J] that the machine loses up to each step, of the path with these separations [m].
 
-    In a jump at one demand the energy of the contacts and of the machine falls. Contacts that are made or
-    parted on the way lose a part of that, as under fixed grips; the rest sets the flat in motion, and the machine loses
-    it.
+    In a jump, at one demand, the energy of contacts and machine falls. Contacts that are made or parted meanwhile lose
+    a part of it, as under fixed grips; the rest sets the flat in motion and is lost by the machine.
 
     A flat that a dead load pulls off is followed up to ``clear`` [m], where no contact is left. ``along`` returns the
     law along separations [m].

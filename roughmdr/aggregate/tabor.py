@@ -38,20 +38,20 @@ the safe one.
 
 
 class JkrValidity(NamedTuple):
-    """How well JKR holds for an ensemble."""
+    """The limits of JKR for an ensemble."""
 
     tabor: float = math.inf
     """The least Tabor number [1]; inf where the strength of the adhesion is not given."""
     jkr_error: float = 0.0
-    """About the error of the force of JKR, over the largest force; with ``ASSUMED_RANGE`` where no range is given."""
+    """Estimated error of the force by JKR, over the largest force; with ``ASSUMED_RANGE`` where no range is given."""
     contact_error: float = 0.0
-    """About the error of JKR's force of one contact [N] while it holds; jumps on before touch are left out."""
+    """Estimated error of JKR's force of one contact [N] while it lasts; jumps on before touch are left out."""
 
     @property
     def reach(self) -> float:
         """Largest distance before touch from which contacts may jump on, over the stretch at which they detach.
 
-        At most 1, and so where the range is not given.
+        At most 1, which it also is where the range is not given.
         """
         return min(_JUMP * self.tabor**_JUMP_POWER, 1.0) if 0.0 < self.tabor < math.inf else 1.0
 
@@ -64,7 +64,7 @@ def jkr_validity(
     adhesion: Adhesion,
     detached: Callable[[], Detachments] | None = None,
 ) -> JkrValidity:
-    """Return how far JKR is off; its Tabor number is 0 where a contact is not representable in JKR.
+    """Return the limits of JKR; the Tabor number is 0 where a contact is not representable in JKR.
 
     ``spread`` is the standard deviation of the heights [m]; ``detached`` returns where the contacts detach under JKR,
     if that is known already.
@@ -86,7 +86,7 @@ def jkr_validity(
         return JkrValidity(0.0, math.inf, math.inf)
     tabor = tabor_number(radius, effective_modulus, adhesion.work, adhesion.strength)
     pull_off = _PER_FOLD * effective_modulus * radius * depth
-    if tabor * tabor == 0.0:  # to a float: as far from JKR as can be
+    if tabor * tabor == 0.0:  # below any float: DMT
         return JkrValidity(tabor, math.inf, _MOST_PULL_OFF * pull_off)
     sharp = SHAPES[shape].flat and SHAPES[shape].corner
     at_corner = _AT_A_CORNER if sharp else 0.0

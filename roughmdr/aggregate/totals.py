@@ -9,9 +9,8 @@ from roughmdr.numerics.summation import BLOCK, accumulate, sum_by_halves
 
 # Rows of the totals.
 FORCE, RADIUS, AREA, STIFFNESS, COUNT, ENERGY, DISSIPATED, ERROR, MACHINE, CONDUCTANCE = range(10)
-"""That of the machine, the energy which its jumps lose, is filled where there is one; the conductance radius is that of
-the radii where contacts do not feel each other.
-"""
+"""MACHINE, the energy that jumps of a machine lose, is filled under a machine alone; CONDUCTANCE is the sum of radii
+where contacts are independent."""
 ROWS = 10
 TOTAL_INDEX = {
     "force": FORCE,
@@ -33,7 +32,7 @@ TOTAL_INDEX = {
 def add_totals(count: int, block: Block, step: int, totals: Totals) -> None:
     """Add the first ``count`` asperities of a block to the wanted totals of a step.
 
-    Each total selects its terms as it makes them: another pass over the block for that would cost a tenth of all.
+    Each total selects the contacts itself: another pass over the block for that would take a tenth of all time.
     """
     params, scales, contacts = block.params, block.scales, block.contacts
     terms, total, compensation = contacts[TERM], totals.total, totals.compensation
@@ -77,7 +76,7 @@ def add_totals(count: int, block: Block, step: int, totals: Totals) -> None:
 def jumps(count: int, block: Block) -> float:
     """Return the energy [J] dissipated in the jumps of a block since the step before.
 
-    Between two steps the flat moves one way, so that a contact made or lost meanwhile has jumped once: on at first
+    Between two steps the flat does not turn, so that a contact made or lost meanwhile has jumped once: on at first
     touch, where it goes from no energy to U < 0, or off at its fold, from U > 0 to none.
     """
     params, scales, contacts = block.params, block.scales, block.contacts
@@ -94,14 +93,14 @@ def jumps(count: int, block: Block) -> float:
 
 
 def jumps_of_either(count: int, block: Block) -> float:
-    """Return as ``jumps_between_branches`` or as ``jumps``, as the rows tell."""
+    """Do as ``jumps_between_branches`` where the rows have several branches, else as ``jumps``."""
     if block.params[0, BRANCHED] > 0.0:
         return float(kernel.jumps_between_branches(count, block))
     return float(kernel.jumps_of_one(count, block))
 
 
 def jumps_between_branches(count: int, block: Block) -> float:
-    """Return as ``jumps`` the energy where a contact also jumps from one branch to another."""
+    """Return the energy of ``jumps``, with those of contacts from one branch to another."""
     params, scales, contacts = block.params, block.scales, block.contacts
     terms = contacts[TERM]
     for i in range(count):

@@ -1,4 +1,4 @@
-"""The separations of a flat that hangs on a machine, from what the machine demands at each step."""
+"""The separations of a flat on a machine, from the demand of the machine at each step."""
 
 import math
 
@@ -20,7 +20,7 @@ from roughmdr.numerics.arguments import Floats
 from roughmdr.numerics.jit import as_argument, njit, once, specialise
 from roughmdr.numerics.underway import filling
 
-_BESIDE = 4.0  # roundings from a detachment to where it is certainly passed
+_BESIDE = 4.0  # distance from a detachment at which it is certainly passed [rounding]
 _NONE = np.zeros(0)
 
 
@@ -54,7 +54,7 @@ def separations_of(
         touches, releases = np.sort(height + adhesion.range), np.sort(release)
     asperities = response.keep(height, columns, material, adhesion.range, release, kernels.prepare)
     compiled = _compiled(kernels)
-    compiled.block_at(asperities, 0)  # its depths are the scale of first steps
+    compiled.block_at(asperities, 0)  # the depths of the first block are the scale of first steps
     first_touch = float(height[0] + adhesion.range)
     top = max(float(releases[-1]) if releases.size else first_touch, first_touch)
     beside = _BESIDE * float(np.spacing(max(abs(top), abs(float(height[-1])))))
@@ -108,7 +108,7 @@ def _memory(turns: list[float]) -> response.Memory:
 
 @njit
 def arrive(target: float, search: Search, jumps: Jumps, step: int) -> Stand:
-    """Return where a flat from afar comes to, at most just above first touch; inf under a dead load that pulls.
+    """Return the separation that a flat from infinity comes to, just above first touch at most; inf if a load pulls.
 
     Without any load it is pulled down at first touch.
     """

@@ -1,4 +1,4 @@
-"""One asperity on slow approach from afar: where contact begins, and which branches it is on from then on."""
+"""One asperity on slow approach from infinity: where contact begins, and the branches that it then follows."""
 
 import math
 from typing import NamedTuple
@@ -11,7 +11,7 @@ from roughmdr.numerics.arguments import Floats
 
 
 class Branch(NamedTuple):
-    """A branch that is stable under fixed grips, from its foot to its top, or the part that a path is on."""
+    """A branch that is stable under fixed grips, from its foot to its top, or the part of it that a path follows."""
 
     foot: float
     """The state where it begins."""

@@ -47,8 +47,8 @@ class Contact(NamedTuple):
 
     @classmethod
     def rounded(cls, shape: Shape, effective_modulus: float, adhesion: Adhesion) -> "Contact":
-        """Return likewise the contact with a depth of as many digits as its kernels have: next to the fold of a single
-        asperity it needs more, in a mean over heights it does not.
+        """Return the contact as ``of``, with a depth of as many digits as its kernels have: enough for a mean over
+        heights, not next to the fold of a single asperity.
         """
         if not isinstance(shape, Shape):
             raise ShapeError(f"shape is {shape!r}; it must be a shape such as Paraboloid(radius=1e-6)")
@@ -170,7 +170,7 @@ class Contact(NamedTuple):
             return results | {"stiffness": self.stiffness * stiffness}
         state = apply(kernels.state_of_radius, a, self.radius, self.params)
         beside_fold = state
-        if kernels.adhesive and not kernels.iterative:  # other folds lie between the floats
+        if kernels.adhesive and not kernels.iterative:  # other folds are no exact floats
             above = apply(kernels.state_of_radius, np.nextafter(a, math.inf), self.radius, self.params)
             beside_fold = np.where(state == 0.0, above, state)
         force, stiffness = self.radius_force_stiffness(state)[1], self.radius_force_stiffness(beside_fold)[2]
@@ -214,7 +214,7 @@ def prepared(kernels: Kernels, shape: Shape, effective_modulus: float, adhesion:
 
 
 def exact_depth(shape: ProfileShape, effective_modulus: float, work: float, params: Floats) -> Pair:
-    """Minus the indentation [m] (fixed grips) or minus the force [N] (dead load) at detachment, as two floats.
+    """Return minus the indentation [m] (fixed grips) or minus the force [N] (dead load) at detachment, as two floats.
 
     These are dl(a) - g(a) and 2 E* [a dl(a) - (a g - G)] at the lowest foot of the row (H 40-41, 44).
 

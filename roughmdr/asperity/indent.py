@@ -160,7 +160,7 @@ def _check_combination(control: str, method: str, approach: bool) -> None:
 def _solver(
     contact: Contact | Springs, control: str, machine_stiffness: float, approach: bool
 ) -> Callable[[Floats], Results]:
-    """Return what computes the results at values of the control."""
+    """Return the function that computes the results at values of the control."""
     if isinstance(contact, Contact):
         if control == "remote":
             held = OnMachine.on_spring(contact, machine_stiffness)

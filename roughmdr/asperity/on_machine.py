@@ -3,7 +3,7 @@
 The far end of a spring that bears the force P is at X = delta + P/k_m. Along the equilibria X grows where the contact
 is stable under fixed grips and k > -k_m: there it is stable on the spring. A branch ends in folds where k = -k_m, the
 lower of which comes before that of fixed grips; under dead load, k_m -> 0, P stands for X. Where k does not grow along
-a branch, as for power laws under JKR with 1/2 < n < 0.768, it can be parted in several.
+a branch, as for power laws under JKR with 1/2 < n < 0.768, several parts of it can be stable.
 """
 
 import math
@@ -20,9 +20,9 @@ from roughmdr.loading.machine import DEAD_LOAD, Machine, spring
 from roughmdr.numerics.arguments import Floats
 from roughmdr.schema.arguments import check_number
 
-_FARTHEST = 1e150  # ratio of the stiffnesses of machine and contact; its square is a float
-_LARGEST = 1e140  # state; its square is a float
-_SMALLEST = 1e-290  # distance from the foot
+_FARTHEST = 1e150  # largest ratio of the stiffnesses of machine and contact; its square is a float
+_LARGEST = 1e140  # largest state; its square is a float
+_SMALLEST = 1e-290  # least distance from the foot
 _ABOVE = 1e300  # stands for what is not representable
 
 

@@ -1,6 +1,6 @@
-"""Which parts of a branch that is stable under fixed grips are stable on a machine: where weight + compliance k > 0.
+"""The parts of a branch, stable under fixed grips, that are stable on a machine: where weight + compliance k > 0.
 
-k goes to -inf at the folds of fixed grips, and in between it may have more than one extreme. So it is looked at on a
+k goes to -inf at the folds of fixed grips, and in between it may have more than one extreme. So k is evaluated on a
 fine grid of states, its extremes are refined where they decide, and its sign changes are solved for.
 """
 
@@ -23,8 +23,8 @@ _Firmness = Callable[[Floats], Floats]
 _NEAREST, _BEYOND = 1e-9, 4.0  # distances from the foot at which the grid begins and ends, over that of dead load
 _POINTS = 240
 _RTOL_EXTREME = 1e-7  # error of the state of an extreme, over its bracket; the value there is right to the square
-_REGULAR = 1e-2  # relative change of k next to a foot, where that is a corner and no fold
-_LEAST, _ROUNDING = 1e-300, 2.0**-44  # next to a fold, absolute or over its state: nearer, k has no digits
+_REGULAR = 1e-2  # relative change of k next to a foot that is a corner, not a fold
+_LEAST, _ROUNDING = 1e-300, 2.0**-44  # least distance from a fold, absolute and over its state: nearer, k has no digits
 
 
 def stable_parts(contact: Contact, machine: Machine, branch: Branch) -> list[Branch]:
@@ -76,7 +76,7 @@ def _last_under_load(contact: Contact) -> float:
 
 
 def _grid(contact: Contact, branch: Branch, end: float) -> Floats:
-    """Return distances from the foot, dense at both ends of a branch, and next to places where k may turn."""
+    """Return distances from the foot, dense at both ends of a branch, and near states where k may have an extreme."""
     near = np.geomspace(_NEAREST * end, end, _POINTS)
     points = [near, np.linspace(0.0, end, _POINTS)[1:]]
     if branch.top < math.inf:

@@ -1,4 +1,4 @@
-"""The Tabor number of one asperity, the adhesion model that it allows, and warnings of both."""
+"""The Tabor number of one asperity, the adhesion model that follows from it, and warnings about both."""
 
 import math
 from typing import Unpack

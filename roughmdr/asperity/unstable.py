@@ -20,14 +20,14 @@ _RTOL = 4.0 * float(np.finfo(np.float64).eps)
 
 
 class Equilibrium(NamedTuple):
-    """An equilibrium; by contact and cohesive radius they are in order."""
+    """An equilibrium; equilibria are ordered by contact and cohesive radius."""
 
     contact_radius: float
     cohesive_radius: float
     force: float
     stiffness: float
     stable: bool
-    """Under fixed grips."""
+    """Whether it is stable under fixed grips."""
 
     @classmethod
     def from_results(cls, results: Results, *, stable: bool) -> "Equilibrium":
@@ -85,7 +85,7 @@ def _falling_radii(contact: Contact) -> Iterator[tuple[float, float]]:
 
 
 def _unstable_dugdale(contact: Contact, delta: float) -> Iterator[Equilibrium]:
-    """Yield those of a shape with a profile, whose state goes along all equilibria from 0 on."""
+    """Yield those of a shape with a profile, whose state parametrises all equilibria from 0 on."""
     from scipy.optimize import brentq
 
     def excess(state: float) -> float:
@@ -99,7 +99,7 @@ def _unstable_dugdale(contact: Contact, delta: float) -> Iterator[Equilibrium]:
 
 
 def _unstable_dugdale_punch(contact: Contact, delta: float) -> Iterator[Equilibrium]:
-    """Yield that of a flat punch whose cohesive zone ends within its edge.
+    """Yield the equilibrium of a flat punch whose cohesive zone ends within its edge.
 
     There g = 0 and K = 0 (``kernels.dugdale.equilibrium``): with a = c cos(theta), delta = -beta c sin(theta) and
     beta c (theta sin(theta) - 1 + cos(theta)) = pi/2 w/sigma0; without contact delta = -2/pi beta c - w/sigma0.

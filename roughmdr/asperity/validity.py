@@ -22,7 +22,7 @@ edge, 5 %; it is 1 % off at 7.
 """
 
 _SLOPE_DIVISOR = 3.0  # g of a sphere is that of its paraboloid times 1 + (x/R)^2/3 + ...
-_VERTICAL = 10.0  # a slope from which on a flank is as good as vertical
+_VERTICAL = 10.0  # slope from which on a flank counts as vertical
 _UPRIGHT = float(np.finfo(np.float64).max)  # slope of a vertical flank
 
 

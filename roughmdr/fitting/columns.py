@@ -32,7 +32,7 @@ class Columns(NamedTuple):
     units: list[str]
     """Units as the file spells them; empty for SI."""
     rows: list[tuple[str, list[object]]]
-    """The place of each row, in messages, and its entries."""
+    """Position of each row, in words for messages, and its entries."""
     file: Path | None = None
 
 
@@ -74,7 +74,7 @@ def _of_text(path: Path) -> Columns:
 
 
 def _with_point(entry: str) -> str:
-    """Return a number with a decimal point in place of a comma; what else an entry is stays."""
+    """Return a number with a decimal point in place of a comma; any other entry stays as it is."""
     match = _DECIMAL_COMMA.fullmatch(entry)
     return f"{match[1]}.{match[2]}" if match else entry
 

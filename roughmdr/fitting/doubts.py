@@ -14,7 +14,7 @@ from roughmdr.fitting.uncertainty import Uncertainty, correlation_of
 from roughmdr.numerics.arguments import Floats
 from roughmdr.schema.units import format_quantity
 
-_ALIKE, _SAME = 0.99, 0.9999  # correlations
+_ALIKE, _SAME = 0.99, 0.9999  # correlations of parameters that the curve hardly tells apart, and does not
 _SHARED = 0.05  # product of the weights of two parameters in weak directions from which they count as joined
 _WIDE = math.log(2.0)  # half a 95 % interval of x that is very wide: a factor of two, or as much of the scale
 _AT_BOUND = 1e-3
@@ -23,7 +23,7 @@ _FAR_OFF = 2.0  # root mean square of deviations over their stated errors
 
 
 def doubts(model: Model, found: Found, known: Uncertainty) -> Iterator[str]:
-    """Yield what a fit leaves in doubt, in words."""
+    """Yield the doubts about a fit, in words."""
     parameters = model.parameters
     groups = _alike(known.slopes)
     for group in groups:

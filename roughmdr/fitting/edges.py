@@ -1,4 +1,4 @@
-"""How the jumps of a law cut the intervals of its parameters.
+"""Bounds on parameters by the jumps of a law.
 
 A jump lies between two measured steps, however uncertain it is by the standard errors of the parameters, if beyond one
 of them the law would miss the load measured there by much more than the noise.
@@ -14,8 +14,8 @@ from roughmdr.fitting.search import Found
 from roughmdr.numerics.arguments import Floats
 
 _CERTAIN = 25.0  # least increase of the sum of squares beyond an edge, over the variance of the noise: five deviations
-_BISECTIONS = 50  # halvings of the range of the multiple of a direction
-_LARGEST = 1e9  # such multiple, over the least that may be long enough
+_BISECTIONS = 50  # halvings in the search for the multiple of a direction
+_LARGEST = 1e9  # largest such multiple, over the least that may be long enough
 
 
 class Edges(NamedTuple):
@@ -48,14 +48,14 @@ def certain_edges(model: Model, found: Found) -> Edges:
 
 
 def _least_by(left: Floats, deviations: Floats) -> float:
-    """Return the least sum of squares to which parameters can lead, as the linear law has it."""
+    """Return the least sum of squares that parameters can reach if the law is linear in them."""
     return float(np.sum(np.square(deviations)) - np.sum(np.square(left.T @ deviations)))
 
 
 def farthest(direction: Floats, radius: float, edges: Edges) -> float:
     """Return the largest direction . u of the vectors u within edges that are no longer than ``radius``.
 
-    That one is nearest to a multiple of the direction, among those within the edges, and grows with it.
+    It is the point within the edges that is nearest to some multiple of the direction, and grows with that.
     """
     low = 0.5 * radius / float(np.linalg.norm(direction) or 1.0)
     high = _LARGEST * low

@@ -1,9 +1,9 @@
 """Least squares of a law whose contact jumps, interval by interval.
 
-As a jump of the law passes a measured step, the sum of squares jumps as well. Between, it is smooth, and has a minimum
-for each interval: the pair of steps between which contact is made, and that between which it is lost, by each
-population of one height. It is found by Gauss and Newton's method with the edges of the interval as constraints, and
-neighbouring intervals are tried from it.
+As a jump of the law passes a measured step, the sum of squares jumps as well. An interval is the set of parameters that
+have each contact made, and lost, between the same two steps, for each population of one height. Within it the sum is
+smooth, and its minimum is found by Gauss and Newton's method with the edges of the interval as constraints; then
+neighbouring intervals are tried.
 """
 
 from collections.abc import Iterator
@@ -35,7 +35,7 @@ def with_measured_jumps(model: Model, x: Floats) -> Floats:
 def least_squares_between(model: Model, x: Floats) -> Floats:
     """Return the parameters of least squares from some x, in the best interval.
 
-    They are that of x and that of the measured jumps, and then the neighbours of the better, as long as one is better.
+    The first two intervals are those of x and of the measured jumps; then neighbours of the best, until none is better.
     """
     starts = (x, with_measured_jumps(model, x))
     best = min((_least(model, model.point(each)) for each in starts), key=_cost)
@@ -58,7 +58,7 @@ def _cost(point: Point) -> float:
 
 
 def _measured(model: Model, jumps: Interval) -> Interval:
-    """Return the steps at which the measured load changes most, where the law jumps on the same ways."""
+    """Return the steps at which the measured load changes most, in the directions of the jumps of the law."""
     turns = np.sign(np.diff(model.curve.values))
     way = np.cumsum(np.diff(turns, prepend=turns[0]) != 0.0)
     change = np.abs(np.diff(model.curve.load))
@@ -98,7 +98,7 @@ def nearest_in(model: Model, point: Point, interval: Interval, jumps: Jumps | No
 
 
 def places_of(model: Model, interval: Interval, jumps: Jumps) -> tuple[Floats, Floats]:
-    """Return where jumps lie, 0 to 1 in an interval, and the derivatives [jump, parameter]."""
+    """Return the positions of jumps, from 0 to 1 in an interval, and their derivatives [jump, parameter]."""
     begin, width = model.curve.values[list(interval)], np.diff(model.curve.values)[list(interval)]
     return (jumps.control - begin) / width, jumps.slopes / width[:, None]
 
@@ -116,7 +116,7 @@ def _least(model: Model, point: Point) -> Point:
 
 
 def _improved(model: Model, point: Point) -> Point | None:
-    """Return a better point of the same interval, as the linear law has it; None where there is none."""
+    """Return a better point of the same interval, by linearisation; None where there is none."""
     left, sizes, right = np.linalg.svd(model.slopes(point.x), full_matrices=False)
     axes, goal = right.T / np.maximum(sizes, _FLAT * sizes[0]), -left.T @ point.deviations
     low, high = model.bounds

@@ -43,7 +43,7 @@ class MeasuredCurve(NamedTuple):
 
     @property
     def weight(self) -> Floats:
-        """By which deviations are divided: the error of each load, or the largest load."""
+        """The divisor of deviations: the error of each load, or the largest load."""
         return np.full_like(self.load, np.abs(self.load).max()) if self.error is None else self.error
 
     def backwards(self) -> "MeasuredCurve":

@@ -26,7 +26,7 @@ _LEAST_ERROR = 1e-12  # relative error of the force of a contact
 _LONGEST_STEP = 0.01  # largest change of x in differences
 _JUMP = 0.5  # ratio of the differences to both sides of x, beyond which one of them holds a jump
 _LITTLE = 1e-5  # change of x in differences of the places of jumps
-_FINER, _REFINEMENTS = 64, 4  # steps in the place of one, and how often, in which the place of a jump is found
+_FINER, _REFINEMENTS = 64, 4  # steps that replace one, and how often, to locate a jump
 
 
 class Point(NamedTuple):
@@ -54,7 +54,7 @@ _NONE = Point(np.empty(0), np.empty(0), 0.0, ())
 
 
 class Model:
-    """The expected law at the measured steps; ``x`` are the free parameters as they are sought."""
+    """The expected law at the measured steps as a function of x, one number for each free parameter."""
 
     def __init__(self, scene: Scene, curve: MeasuredCurve, free: list[str]) -> None:
         if reason := scene.reason_against("expected"):
@@ -131,7 +131,7 @@ class Model:
 
     @contextmanager
     def at_measured_separations(self) -> Iterator[None]:
-        """Let the spring of a machine bear the measured force: the separation is known then, and the law soon found."""
+        """Let the spring of a machine bear the measured force: then the separation is known, and the law is fast."""
         self.exact, self._last = False, _NONE
         try:
             yield
@@ -170,11 +170,11 @@ class Model:
         return Jumps(found[0], np.stack([each - found[0] for each in found[1:]], axis=1) / changes)
 
     def _control_of_jumps(self, x: Floats) -> Floats:
-        """Return that at which the contact is made or lost, in order; empty where the law has none."""
+        """Return the control [m] at each jump of the contact, in order; empty where the law has none."""
         at = np.array(self._point(x).jumps, dtype=int)
         first, last = self.curve.values[at], self.curve.values[at + 1]
         for _ in range(_REFINEMENTS if at.size else 0):
-            apart = np.append(True, (np.diff(first) != 0.0) | (np.diff(at) > 0))  # others share an interval
+            apart = np.append(True, (np.diff(first) != 0.0) | (np.diff(at) > 0))  # jumps in different intervals
             between = np.linspace(first[apart], last[apart], _FINER + 1)
             finer = np.insert(self.curve.values, np.repeat(at[apart] + 1, _FINER + 1), between.T.ravel())
             try:
@@ -190,16 +190,16 @@ class Model:
     def slopes(self, x: Floats) -> Floats:
         """Return the derivatives [step, parameter] of the deviations; RoughmdrError where the law has none.
 
-        The step of the differences is that at which they are best, the cube root of the error of the law.
+        The step of the differences is the best one, the cube root of the error of the law.
         """
         middle = self.point(x)
         step = min(max(middle.error, _LEAST_ERROR) ** (1.0 / 3.0), _LONGEST_STEP)
         return np.stack([self._slope(middle, step * direction) for direction in np.eye(x.size)], axis=1)
 
     def _slope(self, middle: Point, change: Floats) -> Floats:
-        """Return the derivative in one direction from the differences to both sides, or to that which has a law.
+        """Return the derivative in one direction from the differences to both sides, or to the one with a law.
 
-        Where a contact jumps within one of them, the other is smaller by far, and alone is taken.
+        Where a contact jumps within one of them, the other, which is much smaller, is taken alone.
         """
         x, here = middle.x, middle.deviations
         pair = np.array([self._point(x + change).deviations - here, here - self._point(x - change).deviations])
@@ -218,14 +218,14 @@ class Model:
     def on_machine(self, x: Floats, law: LoadSeparation, change: Floats) -> Floats:
         """Return the change of the load at the measured control that a ``change`` at given separation makes.
 
-        A spring of stiffness k gives way: contacts of stiffness S leave k/(k + S) of it.
+        A spring of stiffness k yields: with contacts of stiffness S the change is k/(k + S) times as large.
         """
         if self.curve.control == "separation":
             return change
         spring, contacts = self.scene(x).path.machine_stiffness, law.variables["stiffness"]
         if spring is None:
             return change
-        stiffness = np.where(contacts > -spring, contacts, np.inf)  # they jump there, and say nothing
+        stiffness = np.where(contacts > -spring, contacts, np.inf)  # contacts jump there
         return np.asarray(change * spring / (spring + stiffness))
 
     def _offset(self, x: Floats) -> float:

@@ -54,7 +54,7 @@ class Parameter(NamedTuple):
         return self.start * math.exp(x) if self.logarithmic else self.start + self.scale * x
 
     def per_x(self, x: float) -> float:
-        """Return by how much the number grows with x."""
+        """Return the derivative of the number with respect to x."""
         return self.value(x) if self.logarithmic else self.scale
 
 

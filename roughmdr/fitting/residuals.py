@@ -1,4 +1,4 @@
-"""Residuals of a fit: their size, and whether neighbours go together, as those of a law that fits the data do not."""
+"""Residuals of a fit: their size, and whether neighbours are correlated, which means that the law does not fit."""
 
 import numpy as np
 

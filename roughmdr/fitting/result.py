@@ -83,7 +83,7 @@ def assemble(model: Model, found: Found, known: Uncertainty, seconds: float, com
 
 
 def _of_parameter(parameter: Parameter, i: int, found: Found, known: Uncertainty) -> dict[str, Array]:
-    """Return a parameter with its standard error and the ends of its interval, which stay where it was sought."""
+    """Return a parameter with its standard error and its interval, limited to the bounds of the search."""
     x, error = float(found.x[i]), float(known.standard_error[i])
     (lower, upper), per_x, key, unit = known.reach[:, i], parameter.per_x(x), parameter.key, _spelled(parameter.unit)
     numbers = {

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from scipy.optimize import OptimizeResult
 
 _FTOL, _XTOL, _GTOL, _MAX_STEPS = 1e-10, 1e-7, 1e-12, 60
-_STARTS, _TRIED = 16, 3  # other starts a parameter, and how many of them are followed
+_STARTS, _TRIED = 16, 3  # other starts per parameter, and number of them that are followed
 _POOR = 0.05  # r.m.s. deviation over the largest load from which other starts are tried too
 
 
@@ -31,7 +31,7 @@ def search(model: Model) -> Found:
     """Return the parameters of least squares; RoughmdrError where no start has a law.
 
     Where the deviations from the start of the scene are systematic or large, other starts around it are tried. On a
-    machine, whose law takes longer, that is done at the separations which the measured force means.
+    machine, whose law takes longer, they are tried at the separations that follow from the measured force.
     """
     if model.curve.control == "separation":
         found = _search(model)

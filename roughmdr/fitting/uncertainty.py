@@ -14,13 +14,13 @@ _LEVEL = 0.95
 _TOGETHER = 0.99  # probability of the parameters, all together, of which the edges between jumps allow some
 _LEAST_SLOPE = 1e-6  # least slope over the largest: what changes the law by less is not known at all
 _LEAST_FREEDOM = 1e-6  # least degrees of freedom of a step: with none, the fit follows it and it tells no noise
-_NEIGHBOURS = 2  # steps to each side whose residuals, with its own, tell the noise of a step
+_NEIGHBOURS = 2  # steps to each side whose residuals estimate the noise of a step
 _LEAST_NOISE = 1e-6  # least variance of the noise over the largest, where degrees of freedom are counted
 _UNKNOWN = 10.0  # standard error of x along a combination that is not known at all, however small the noise
 
 
 class Uncertainty(NamedTuple):
-    """How well the sought numbers x of a fit are known."""
+    """The uncertainty of the free parameters x of a fit."""
 
     influence: Floats
     """Shift of each x by a standard deviation of each step, [parameter, step]; last, along what no step determines."""
@@ -65,10 +65,10 @@ def correlation_of(influence: Floats) -> Floats:
 def uncertainty(model: Model, found: Found) -> Uncertainty:
     """Return the uncertainty at the parameters of least squares.
 
-    With a standard deviation of each load, it is that which they cause, normal. Without, the variance of the noise of
+    With a standard deviation of each load it follows from these, by the normal distribution. Without, the variance of
     each step is that of the residuals near it, for noise that is constant, proportional or otherwise uneven, with
-    Student's t of as many degrees of freedom as the steps have that decide. Intervals end where a jump would miss a
-    measured load: see ``edges``.
+    Student's t and the degrees of freedom of the deciding steps. Intervals end where a jump would miss a measured
+    load: see ``edges``.
     """
     from scipy.stats import norm, t
 
@@ -97,10 +97,9 @@ def uncertainty(model: Model, found: Found) -> Uncertainty:
 
 
 def _reach(influence: Floats, quantile: Floats, edges: Edges) -> Floats:
-    """Return how far intervals go to both sides: a quantile of standard errors, and no farther than edges allow.
+    """Return the extent of intervals to both sides: a quantile of standard errors, limited by the edges.
 
-    How far these allow it is sought among all parameters that are, together, not beyond what has a probability of
-    ``_TOGETHER``.
+    The limit is sought among all parameters within the joint confidence region of probability ``_TOGETHER``.
     """
     from scipy.stats import chi2, norm
 
@@ -118,8 +117,8 @@ def _reach(influence: Floats, quantile: Floats, edges: Edges) -> Floats:
 
 
 def _check_enough(model: Model, slopes: Floats) -> None:
-    """OutOfRange where as many steps or fewer depend on the parameters as there are of these, which then fit whatever
-    noise the steps have; the errors of the load tell it.
+    """Raise OutOfRange where the steps that depend on the parameters are no more than these, which then fit any noise,
+    unless the errors of the load are given.
     """
     deciding = int(np.sum(np.linalg.norm(slopes, axis=1) > _LEAST_SLOPE))
     if model.curve.error is None and deciding <= slopes.shape[1]:
@@ -133,9 +132,9 @@ def _check_enough(model: Model, slopes: Floats) -> None:
 
 
 def by_residuals(inverse: Floats, left: Floats, residuals: Floats) -> tuple[Floats, Floats]:
-    """Return how far noise, as the residuals near each step tell it, moves each parameter, and its degrees of freedom.
+    """Return the shift of each parameter by the noise of each step, from residuals near it, with degrees of freedom.
 
-    ``inverse`` [parameter, step] is how far a deviation moves each; ``left`` [step, parameter] are orthonormal vectors
+    ``inverse`` [parameter, step] is the shift by a deviation; ``left`` [step, parameter] are orthonormal vectors
     that span the slopes. Each variance is a weighted sum of squared residuals. Its degrees of freedom are those of the
     chi-square distribution that scatters as much, (tr M)^2/tr M^2 with M = w (1 - H) w, after Bell and McCaffrey
     (2002); w^2 is the share of each residual in the sum.

@@ -11,7 +11,7 @@ _DIGITS = 4, 12  # least and most digits of a fitted number
 
 
 def describe_fit(fit: Labelled) -> str:
-    """Return the parameters with standard errors and 95 % intervals, how well they fit, and what is in doubt."""
+    """Return the parameters with standard errors and 95 % intervals, the quality of the fit, and doubts."""
     return format_table(_lines(fit))
 
 
@@ -23,7 +23,7 @@ def describe_parameters(fit: Labelled) -> list[str]:
 
 
 def describe_shifts(fit: Labelled) -> str:
-    """Return by how much the error of the law may shift the parameters; empty where that is not known."""
+    """Return the shifts of the parameters by the error of the law; empty where that is not known."""
     shifts = [_shift(fit, key) for key in parameter_keys(fit) if _has_shift(fit, key.replace(".", "_"))]
     return f"not in the intervals: that of the law may shift {', '.join(shifts)}" if shifts else ""
 

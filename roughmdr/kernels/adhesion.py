@@ -1,4 +1,4 @@
-"""Adhesion between the surfaces: the model that is asked for, and the Tabor number, which tells which model holds."""
+"""Adhesion between the surfaces: the model that is asked for, and the Tabor number, on which its validity depends."""
 
 import math
 from typing import Literal, NamedTuple, get_args
@@ -57,7 +57,7 @@ class Adhesion(NamedTuple):
         return ("jkr", "dugdale") if self.model == "auto" else (self.model,)
 
     def resolved(self, jkr_error: float) -> "Adhesion":
-        """Return the model itself: for "auto" the cheapest that is right enough where JKR is off by ``jkr_error``."""
+        """Return the model to use: for "auto" JKR if its error ``jkr_error`` is small enough, else Dugdale."""
         if self.model != "auto":
             return self
         return self._replace(model="jkr" if jkr_error <= self.error else "dugdale")

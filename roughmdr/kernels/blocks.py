@@ -10,9 +10,9 @@ from roughmdr.numerics.arguments import Floats
 
 # Rows of ``contacts``. Radius, force and stiffness are filled where the kernels find them together with the state.
 STATE, RADIUS, FORCE, STIFFNESS, STATE_ERROR, IN_CONTACT, BEFORE, TERM = range(8)
-"""STATE_ERROR is filled where the kernels approach the state by steps; once contacts are found it has room for the
-terms of a sum. IN_CONTACT is 1 in contact, else 0, with several branches the number of the branch. BEFORE is IN_CONTACT
-at the step before. TERM has room for x until the contacts are found, then for the terms of a sum.
+"""STATE_ERROR is filled where the kernels approach the state by steps; after that the row holds terms of a sum.
+IN_CONTACT is 1 in contact, else 0, with several branches the number of the branch. BEFORE is IN_CONTACT at the step
+before. TERM holds x until the contacts are found, then terms of a sum.
 """
 CONTACT_ROWS = 8
 

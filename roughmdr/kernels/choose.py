@@ -1,4 +1,4 @@
-"""Which kernels compute which shape, with and without adhesion. A new shape with a profile needs no line here."""
+"""The choice of kernels by shape and adhesion. A new shape with a profile needs no line here."""
 
 from types import ModuleType
 

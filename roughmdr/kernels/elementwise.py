@@ -11,7 +11,7 @@ from roughmdr.numerics.jit import once, specialise
 
 
 class _Kernel(ModuleType):
-    """One kernel, by the name that the loops call it."""
+    """One kernel, by the name by which the loops call it."""
 
     function: Callable[..., Any]
 

@@ -51,7 +51,7 @@ class Kernels(ModuleType):
     iterative = False
     """Whether states are found by Newton's method, and ``params`` is a row."""
     shared = False
-    """Whether that is one row for all asperities."""
+    """Whether one such row serves all asperities."""
     branched = False
     """Whether there can be more than one stable branch."""
     cohesive = False
@@ -65,7 +65,7 @@ class Kernels(ModuleType):
     found_together = False
     """Whether radius, force and stiffness cost no more together than one of them."""
     alike = False
-    """Whether no parameter tells two asperities apart, beside width and rise."""
+    """Whether asperities differ in width and rise alone."""
 
     in_sums: Self | None = None
     """Kernels for the sum over asperities alone, where these are too slow for it; None where they are not."""
@@ -73,19 +73,18 @@ class Kernels(ModuleType):
     """Kernels of any shape, which call the functions of this one by the addresses that its rows lead to: what is
     compiled with them serves all shapes."""
     rows_tell: bool = False
-    """Whether a row says if there can be more than one stable branch, which is as ``branched`` for shapes of all."""
+    """Whether ``branched`` depends on the shape, and is read from the row."""
     functions: Callable[[bool, bool], float] | None = None
-    """(whether those of a sum are needed, and of its energies) -> the address of the functions that ``of_any`` calls.
-    """
+    """(whether for a sum, whether with energies) -> the address of the functions that ``of_any`` calls."""
 
     prepare: Callable[[Material, Columns, int, int, float, float], Any]
     """(material, columns, start, stop, control, deepest) -> params of the asperities from start to stop; control is 0
-    for fixed grips, 1 for dead load; no state beyond the indentation ``deepest`` [m] is asked for,
-    but of asperities out of contact, whose results are dropped."""
+    for fixed grips, 1 for dead load. States deeper than ``deepest`` [m] are asked for out of contact alone, where
+    results are dropped."""
     params_of: Callable[..., Any]
-    """(params, i) -> those of asperity i."""
+    """(params, i) -> the params of asperity i."""
     heterogeneous: Callable[[Any], bool]
-    """params -> whether those of the asperities differ; only where ``found_together`` and ``alike`` are false."""
+    """params -> whether asperities differ in them; only where ``found_together`` and ``alike`` are false."""
     scales: Callable[..., tuple[tuple[float, float], float, float, float]]
     """(effective_modulus, work, width, rise, params) -> depth (hi, lo) [m], radius [m], force [N], stiffness [N/m]."""
     force_scales: Callable[..., tuple[tuple[float, float], float]]
@@ -133,7 +132,7 @@ class Kernels(ModuleType):
     """(state, params) -> the sizes of those terms, in the units of ``adhesion_terms``."""
 
     refinements: int = 0
-    """How often ``refined`` leads from ``initial_guess`` at x to the state; 0 where ``state`` is no slower."""
+    """Number of times ``refined`` is applied to ``initial_guess`` to find the state; 0 where ``state`` is no slower."""
     refined: Kernel
     """(state, x, params) -> the state one step nearer."""
 
@@ -163,7 +162,7 @@ class Kernels(ModuleType):
 
     @property
     def name(self) -> str:
-        """The name by which copies of a loop are told apart in the cache."""
+        """The name that distinguishes copies of a loop in the cache."""
         return self.__name__
 
     def material(
@@ -172,13 +171,13 @@ class Kernels(ModuleType):
         """Return elasticity and adhesion for ``prepare``; E* [Pa].
 
         ``summed`` where a sum compiled with ``of_any`` reads the rows, ``energetic`` where it sums energies. The
-        material is of this process and must not leave it.
+        address is valid in this process alone.
         """
         at = 0.0 if self.functions is None else self.functions(summed, energetic)
         return Material(effective_modulus, adhesion.work, adhesion.strength, at)
 
     def copy(self, suffix: str = "") -> Self:
-        """Return these kernels under a name with ``suffix``, to be changed."""
+        """Return a copy of these kernels, which may be changed, under a name with ``suffix``."""
         other = type(self)(self.__name__ + suffix)
         vars(other).update({**vars(self), "__name__": other.__name__})
         return other

@@ -7,7 +7,7 @@ import numpy as np
 from roughmdr.errors import OutOfRange, TooMuchContact
 from roughmdr.numerics.arguments import Floats
 
-_POINTS = 16  # positions that the law is computed at together
+_POINTS = 16  # positions at which the law is computed in one call
 _MAX_DOUBLINGS = 60
 
 Law = Callable[[Floats], Floats]
@@ -16,7 +16,7 @@ Law = Callable[[Floats], Floats]
 
 
 class OutOfReach(OutOfRange):
-    """Loading has the value before it begins, or never comes to it."""
+    """The value is exceeded at the start of loading, or is never reached."""
 
 
 def first_reached(law: Law, value: float, start: float, distance: float, rtol: float, name: str) -> float:
@@ -53,8 +53,8 @@ def _positions(above: float, below: float) -> Floats:
 
 
 def _until(law: Law, positions: Floats, value: float) -> Floats:
-    """Return the law at falling positions [m], in halves: after the first that holds ``value`` it is not computed, but
-    inf. Far beyond, most asperities may be in contact, which takes long where they feel each other.
+    """Return the law at falling positions [m], in halves: if the first half has reached ``value``, the second is inf.
+    Far beyond, most asperities may be in contact, which takes long where they feel each other.
     """
     half = (positions.size + 1) // 2
     first, rest = _capped(law, positions[:half]), positions[half:]

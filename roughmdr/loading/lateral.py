@@ -1,4 +1,4 @@
-"""The path of a flat that is moved sideways while something normal is held: its separation, or the load on it."""
+"""The path of a flat that is moved sideways at constant separation or constant normal load."""
 
 from typing import NamedTuple
 
@@ -16,9 +16,9 @@ class LateralPath(NamedTuple):
     """The lateral displacement at each step, from rest at 0."""
 
     held: LoadingPath | MachinePath
-    """The normal path of one step that leads to what is held."""
+    """The normal path, of one step, to the constant separation or load."""
     displacement: Floats
-    """[m]: [step]."""
+    """Lateral displacement [m], [step]."""
     memory: Masing
 
     @classmethod
@@ -28,7 +28,7 @@ class LateralPath(NamedTuple):
 
     @property
     def held_value(self) -> float:
-        """The separation, force or pressure that is held, in SI."""
+        """The constant separation, force or pressure, in SI."""
         return float(self.held.values[-1])
 
     @property
@@ -43,17 +43,17 @@ class LateralPath(NamedTuple):
 
     @property
     def watched(self) -> str:
-        """The variable that an error asked for is about."""
+        """The variable whose error [accuracy] controls."""
         return "tangential_force"
 
     @property
     def rigid(self) -> bool:
-        """Whether nothing gives way between the flat and what holds it."""
+        """Whether the flat is held at a separation (fixed grips)."""
         return self.held.rigid
 
     @property
     def unloads(self) -> bool:
-        """Whether the flat rises anywhere, which it does not."""
+        """Whether the flat rises anywhere: never."""
         return False
 
     @property
@@ -62,7 +62,7 @@ class LateralPath(NamedTuple):
         return int(np.unique(self.memory.amplitude).size)
 
     def over(self, usual: LoadingPath) -> "LateralPath":
-        """Return the path of the flat itself: held where ``usual`` asperities have it."""
+        """Return the path of the flat, with the separation that ``usual`` asperities give it under a load."""
         return self._replace(held=LoadingPath.along(usual.separation[:1], unload=False, adhesive=False))
 
     @staticmethod
@@ -81,4 +81,4 @@ class LateralPath(NamedTuple):
 
 
 Path = LoadingPath | MachinePath | LateralPath
-"""Whatever a law is computed along."""
+"""Any path along which a law is computed."""

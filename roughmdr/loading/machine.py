@@ -24,7 +24,7 @@ Number = TypeVar("Number", float, Floats)
 
 
 class Machine(NamedTuple):
-    """How a machine answers the force of the contacts."""
+    """Weight and compliance of a machine: its demand is weight h - compliance F."""
 
     weight: float
     """1 with a spring or fixed grips, 0 under dead load."""
@@ -41,7 +41,7 @@ class Machine(NamedTuple):
         return self.weight * separation - self.compliance * force
 
     def slope(self, stiffness: Number) -> Number:
-        """Return by how much the demand grows with the separation; ``stiffness`` is that of the contacts [N/m]."""
+        """Return d(demand)/dh; ``stiffness`` is that of the contacts [N/m]."""
         return self.weight + self.compliance * stiffness
 
     def energy(self, separation: Number, demand: Number) -> Number:
@@ -61,7 +61,7 @@ def spring(stiffness: float) -> Machine:
 
 
 class Preload(NamedTuple):
-    """The quantity, and its value, that loading goes on to."""
+    """The quantity and its value at which loading ends."""
 
     quantity: str
     """One of "force", "pressure" and "contact_fraction"."""
@@ -73,20 +73,20 @@ class MachinePath(NamedTuple):
     """The path of a machine, step by step."""
 
     control: str
-    """The quantity that it controls: one of ``STEP_COORDINATES`` but "separation"."""
+    """The controlled quantity: any of ``STEP_COORDINATES`` but "separation"."""
     values: Floats
-    """That quantity at each step: the load [N] or pressure [Pa], the position of the far end of the spring [m], or the
+    """Its value at each step: the load [N] or pressure [Pa], the position of the far end of the spring [m], or the
     travel [1].
     """
     demand: Floats
     """The demand of the machine at each step: minus the load [N], or that position [m]; minus the travel, as long as
-    where it leads to is not known.
+    its ends are not known.
     """
     machine: Machine
     adhesive: bool
     """Whether contacts have a memory."""
     preload: Preload | None = None
-    """Where a travel leads to, as long as that is not known."""
+    """The preload that a travel leads to, until its position is found; then None."""
 
     @classmethod
     def along(
@@ -114,12 +114,12 @@ class MachinePath(NamedTuple):
 
     @property
     def watched(self) -> str:
-        """The variable that an error asked for is about; under a dead load, which is the force, the separation."""
+        """The variable whose error [accuracy] controls: the force; under a dead load the separation."""
         return SEPARATION.name if self.machine.is_dead_load else "force"
 
     @property
     def rigid(self) -> bool:
-        """Whether nothing gives way between the flat and what moves it."""
+        """Whether the flat is displacement-controlled by a rigid machine (fixed grips)."""
         return self.machine == FIXED_GRIPS
 
     @property
@@ -133,11 +133,11 @@ class MachinePath(NamedTuple):
         return int(self.values.size)
 
     def over(self, usual: LoadingPath) -> LoadingPath:
-        """Return the path of the flat itself, given that over ``usual`` asperities."""
+        """Return the path of the flat, given its path over ``usual`` asperities."""
         return usual
 
     def between(self, clear: float, turn: float) -> "MachinePath":
-        """Return the path whose travel goes from ``clear`` [m] to ``turn`` [m], which it meets to the last bit."""
+        """Return the path whose travel goes from ``clear`` [m] to ``turn`` [m] exactly."""
         demand = np.where(self.values == 1.0, turn, clear + self.values * (turn - clear))
         return self._replace(demand=demand, preload=None)
 

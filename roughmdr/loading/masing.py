@@ -6,7 +6,7 @@ After a turning point (u_r, T_r) it follows the same curve, twice as large,
     T = T_r +- 2 T1(|u - u_r|/2),
 
 and loses 2 D1(|u - u_r|/2) by slip, where D1(u) is lost on the first curve. Where it comes back to the turning point
-before, the loop is closed and forgotten, as if it had never been left: 4 D1 of half its width are lost in it. Beyond
+before, the loop is closed and forgotten, as if it had never been made: 4 D1 of half its width are lost in it. Beyond
 its largest displacement, on either side, it is on the first curve again.
 
 Sources: G. Masing, Proc. 2nd Int. Congr. Appl. Mech., Zürich (1926) 332; W. D. Iwan, J. Appl. Mech. 33 (1966) 893, for
@@ -20,14 +20,14 @@ import numpy as np
 from roughmdr.numerics.arguments import Floats, Ints
 
 _BRANCH, _LOOP = 2.0, 4.0
-"""How much larger than the first curve a branch is; the loss of a closed loop, of two branches, over that curve's."""
+"""Size of a branch over the first curve; loss of a closed loop, of two branches, over that of the first curve."""
 
 
 class Masing(NamedTuple):
     """The branch that each step of a lateral path is on, and the loops that are closed on its way there."""
 
     amplitude: Floats
-    """Half the way [m] from the turning point that the branch begins at; on the first curve the whole: [step]."""
+    """Half the distance [m] from the turning point where the branch begins; on the first curve all of it: [step]."""
     direction: Floats
     """1 forward, -1 backward: [step]."""
     origin: Ints
@@ -69,7 +69,7 @@ class Masing(NamedTuple):
     def loss(self, first: Floats) -> Floats:
         """Return the energy lost up to each step, from the loss on the first curve up to the amplitude of each step.
 
-        It never falls: roundings by which it would are left out.
+        It never falls: roundings that would make it fall are left out.
         """
         in_loops = np.bincount(self.closed_at, self.lost * first[self.closed], minlength=first.size)
         return np.asarray(np.maximum.accumulate(self._summed(first) + np.cumsum(in_loops)))
@@ -77,7 +77,7 @@ class Masing(NamedTuple):
     def _summed(self, first: Floats) -> Floats:
         """Return the sums along the open branches that lead to each step."""
         total = np.where(self.origin < 0, first, _BRANCH * first)
-        for turn in np.unique(self.origin[self.origin >= 0]).tolist():  # each after that which it is reached from
+        for turn in np.unique(self.origin[self.origin >= 0]).tolist():  # each after that which it begins at
             if self.origin[turn] >= 0:
                 total[turn] += total[self.origin[turn]]
         turned = self.origin >= 0

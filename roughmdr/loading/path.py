@@ -20,7 +20,7 @@ class LoadingPath(NamedTuple):
     @classmethod
     def along(cls, approach: Floats, *, unload: bool, adhesive: bool) -> "LoadingPath":
         """Return the path of these separations [m]; ``unload`` adds them in reverse, the turning point repeated."""
-        # A new array in either case: of one that is strided or read-only numba would compile all loops again.
+        # A new array in any case: for a strided or read-only one numba would compile all loops again.
         separation = np.concatenate([approach, approach[::-1]] if unload else [approach])
         return cls(separation, staircase(separation) if adhesive else no_memory(separation))
 
@@ -31,17 +31,17 @@ class LoadingPath(NamedTuple):
 
     @property
     def values(self) -> Floats:
-        """That quantity at each step, in SI."""
+        """The controlled quantity at each step, in SI."""
         return self.separation
 
     @property
     def watched(self) -> str:
-        """The variable that an error asked for is about."""
+        """The variable whose error [accuracy] controls."""
         return "force"
 
     @property
     def rigid(self) -> bool:
-        """Whether nothing gives way between the flat and what moves it."""
+        """Whether the flat is displacement-controlled by a rigid machine (fixed grips)."""
         return True
 
     @property
@@ -59,7 +59,7 @@ class LoadingPath(NamedTuple):
         return names
 
     def over(self, usual: "LoadingPath") -> "LoadingPath":
-        """Return the path of the flat itself, given that over ``usual`` asperities."""
+        """Return the path of the flat, given its path over ``usual`` asperities."""
         return self
 
     def relative_to(self, origin: float) -> "LoadingPath":
@@ -81,7 +81,7 @@ class LoadingPath(NamedTuple):
     def at_detachment(self) -> NDArray[np.bool_]:
         """Return for each step whether contacts may be exactly at their detachment.
 
-        That is so where the flat has been lower and stands now at its highest since.
+        They may be where the flat has been lower, and is now at its highest position since.
         """
         last = self.memory.first[1:] - 1
         return np.asarray((self.memory.top[last] == self.separation) & (self.memory.bottom[last] < self.separation))

@@ -17,7 +17,7 @@ from roughmdr.loading.staircase import risen
 from roughmdr.numerics.arguments import Floats
 
 _MAX_ROUNDS = 24
-_COARSE = 16  # intervals of a rise: from fewer its largest tension may not show at all
+_COARSE = 16  # least number of intervals of a rise: fewer may miss its largest tension
 _NONE = np.zeros(0)
 
 ForceAlong = Callable[[LoadingPath], Floats]
@@ -28,11 +28,11 @@ class PullOff(NamedTuple):
     """The largest tension of the unloadings of a path; NaN where they end in contact."""
 
     force: float = math.nan
-    """[N], negative; 0 where contacts part without tension."""
+    """Force [N], negative; 0 where contacts part without tension."""
     separation: float = math.nan
-    """Where it is [m]; NaN without tension, as the next."""
+    """Separation there [m]; NaN without tension, as the next two."""
     contacts: float = math.nan
-    """How many contacts carry it."""
+    """Number of contacts that carry it."""
     contact_area: float = math.nan
     """Their area [m2]."""
 
@@ -41,7 +41,7 @@ WITHOUT_TENSION = PullOff(0.0)
 
 
 class LargestTension(NamedTuple):
-    """Where the largest tension is."""
+    """The largest tension, and a path to it."""
 
     force: float
     """[N], negative."""

@@ -1,8 +1,8 @@
-"""Where to look for the lowest force of a rise of the flat, between separations at which it is known.
+"""The separations at which the lowest force of a rise is sought next, between those at which it is known.
 
-In an interval without detachments the force lies above the chords of its neighbours, carried on, since it is convex
-there. In one with detachments, or between two of them, it is taken to fall no further below its ends than twice what
-it changes from one end to the other, here or next to here.
+In an interval without detachments the force is convex, and so lies above the extended chords of the neighbours. In one
+with detachments, or between two of them, it is taken to fall below its ends by no more than twice its change over this
+interval or a neighbour.
 """
 
 import math
@@ -24,7 +24,7 @@ _NARROW = 4.0  # width of an interval across a detachment, over that distance
 
 @njit
 def _fill_bounds(h: Floats, force: Floats, smooth: NDArray[np.bool_], bounds: Floats) -> None:
-    """Fill in how low the force may be in each interval."""
+    """Fill in a lower bound of the force in each interval."""
     for k in range(bounds.size):
         low, high, width = force[k], force[k + 1], h[k + 1] - h[k]
         least, change = min(low, high), abs(high - low)
@@ -62,7 +62,7 @@ def next_separations(h: Floats, force: Floats, detachments: Floats, lowest: floa
     h [m] ascends with the force there [N], and so do the ``detachments``, which are met ``beside`` [m] them.
     """
     count = np.searchsorted(detachments, h)
-    wide = h[1:] - h[:-1] > _NARROW * beside  # a slope across a few roundings is none
+    wide = h[1:] - h[:-1] > _NARROW * beside  # across a few roundings there is no meaningful slope
     bounds = np.empty(wide.size)
     _fill_bounds(h, force, wide & (count[1:] == count[:-1]), bounds)
     bounds[~wide] = math.inf

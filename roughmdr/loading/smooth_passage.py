@@ -1,4 +1,4 @@
-"""Where the flat on a machine stands, if the force of all contacts together is smooth in the separation.
+"""The separations of a flat on a machine where the force of all contacts together is smooth in the separation.
 
 On each leg the demand of the flat (``machine.py``) is known at some separations with its slope, and between them by a
 cubic. Each demand of the machine is looked for in the first interval, in the sense of the leg, in which the cubic
@@ -25,7 +25,7 @@ _FIRST = 2.0**-6  # depth below first touch at which the flat is tried first, ov
 ForceAndStiffness = Callable[[Floats, Floats], tuple[Floats, Floats]]
 """(turning points [m] of the flat before, separations [m] after them, in one sense) -> force [N], stiffness [N/m].
 
-The stiffness is -dF/dh, NaN where it is not known, as of a mean law in which contacts are made and lost all along.
+The stiffness is -dF/dh, NaN where it is not known, as in a mean law, in which contacts are made and lost everywhere.
 """
 
 
@@ -34,9 +34,9 @@ class Table(NamedTuple):
 
     h: Floats
     demand: Floats
-    """It falls along the leg where the machine does: both are turned round on legs that rise."""
+    """Demand, with its sign reversed on legs that rise, so that it falls along the leg."""
     slope: Floats
-    """Change per length of the way [1/m]."""
+    """Change of the demand per distance along the leg [1/m]."""
 
 
 def separations_of(
@@ -63,7 +63,7 @@ def separations_of(
 
 
 def _without_contact(leg: Leg, machine: Machine, first_touch: float) -> Floats:
-    """Return the separations of a flat without contacts as long as it meets none; NaN where it does."""
+    """Return the separations of a flat as long as it meets no contact; NaN where it does."""
     if machine.is_dead_load:
         return np.where((leg.demand > 0.0) | leg.rises, np.inf, np.nan)
     return np.where((leg.demand > first_touch) | leg.rises, leg.demand, np.nan)
@@ -85,7 +85,7 @@ class _Search:
         for _ in range(_MAX_ROUNDS):
             before = h
             h, flown = _first_passages(table, target)
-            if flown.any():  # all contacts are lost, or as good as all
+            if flown.any():  # all contacts are lost, or nearly all
                 h = np.where(flown, np.where(demand > 0.0, np.inf, end) if self._machine.is_dead_load else demand, h)
             moved = ~flown & ~(np.abs(h - before) <= _RTOL * np.abs(h - begin) + 4.0 * np.spacing(np.abs(h)))
             new = np.setdiff1d(h[~flown & moved], table.h)
@@ -164,6 +164,6 @@ def _cubic(table: Table, interval: NDArray[np.int64], part: Floats | float) -> F
 
 
 def _lowest(table: Table) -> Floats:
-    """Return how low the cubics go, at a few points of each interval."""
+    """Return the lowest values of the cubics at a few points of each interval."""
     interval = np.arange(table.h.size - 1)
     return np.asarray(np.min([_cubic(table, interval, part) for part in np.linspace(0.125, 1.0, 8)], axis=0))

@@ -64,7 +64,7 @@ def risen(turns: Floats, separation: Floats) -> Staircase:
         count = np.ones(separation.size, dtype=np.int64)
         more_bottom, more_top = np.full(separation.size, bottom[0]), np.maximum(top[0], separation)
     else:
-        higher = (top > separation[:, None]).sum(axis=1)  # pairs that the flat does not reach
+        higher = (top > separation[:, None]).sum(axis=1)  # pairs whose tops are above the flat
         count = np.minimum(higher + 1, bottom.size)
         kept = np.arange(bottom.size) < count[:, None]
         more_bottom = np.broadcast_to(bottom, kept.shape)[kept]

@@ -1,4 +1,4 @@
-"""The separations of a flat on a machine whose force falls as the separation grows, whatever went before.
+"""The separations of a flat on a machine where the force falls with the separation and has no memory.
 
 The demand of the flat (``machine.py``) then grows with the separation, and each demand of the machine is met once. They
 are met one after the other, each by Newton's method from the one before, held between the separations known to lie on

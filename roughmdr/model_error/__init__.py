@@ -1,8 +1,7 @@
 """The error that the assumptions of the model cause in the force, as far as it can be estimated beside the result.
 
-``interaction.py`` has that of asperities that do not feel each other, ``coupling.py`` that of those that do,
-``parts.py`` all parts together, and ``refusal.py`` says beyond which contact fraction there is no answer, and what the
-likely cause is.
+``interaction.py`` has the error of independent asperities, ``coupling.py`` that of coupled ones, ``parts.py`` all parts
+together, and ``refusal.py`` the contact fraction beyond which there is no answer, with the likely cause.
 """
 
 from roughmdr.model_error.parts import PARTS, Assumptions, ModelError

@@ -27,7 +27,7 @@ def coupled_conductance_error(contact_fraction: Floats, overlap: Floats, ensembl
     ``contact_fraction`` is the summed contact area over the nominal area, ``overlap`` the share of the force of
     contacts that overlap; shape (n,) each.
     """
-    if ensemble.origin == "hills":  # parts of one surface, whose contacts overlap
+    if ensemble.origin == "hills":  # hills are parts of one surface, and their contacts overlap
         error = np.where(contact_fraction > 0.0, _HILLS * math.sqrt(ensemble.anisotropy), 0.0)
     else:
         error = _NEAR * contact_fraction + _OVERLAP * overlap
@@ -41,10 +41,10 @@ def coupled_conductance_error(contact_fraction: Floats, overlap: Floats, ensembl
 def sticking_error(conductance_error: float, ratio: float, coupled: Floats, share: Floats) -> float:
     """Return the error of the stiffness of contacts that stick, if it is the normal one times G*/E*, the ``ratio``.
 
-    It is NaN where that of the conductance is. The directions in which neighbours stand add at most 1 - G*/E* of what
-    neighbours change. That is ``coupled``, the share by which they lower the conductance radius. On a patch that
-    repeats the counter pressure hides it; at random it is then about the change of a conductance by neighbours, over
-    the root of the number of contacts (30 patches of 10, 40 and 160 discs each, 0.2 and 2 % contact: 0.5 to 0.8 of that
+    It is NaN where that of the conductance is. The directions of neighbours add at most 1 - G*/E* of the change by
+    neighbours: ``coupled``, the share by which they lower the conductance radius. On a patch that repeats, the counter
+    pressure hides that change; for random positions it is then about the change of a conductance by neighbours, over
+    the root of the number of contacts (30 patches of 10, 40 and 160 discs each, 0.2 and 2 % contact: 0.5 to 0.8 of it
     at most). ``share`` is the contact fraction over that number; shape (n,) each.
     """
     by_chance = _INDEPENDENT["asperities"] * np.sqrt(share)

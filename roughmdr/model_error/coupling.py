@@ -13,7 +13,7 @@ _FIRST, _THIRD, _FULLER = 0.65, 1.5, 3.0
 """Error of separated contacts to first order, (a/D)^3: factor, power of the contact fraction, and growth with it."""
 _CROWDED = 5.0
 """Growth with the contact fraction of the error by contacts near to each other (``interaction/crowding.py``); to first
-order they make up for a part of what is left out."""
+order that error cancels a part of the error by terms left out."""
 _TYPICAL_CROWDING = 0.15
 """Crowding over the share of the force of overlapping contacts, where their distances are not known."""
 _SUMMITS = 1.3
@@ -57,9 +57,9 @@ def coupling_error(
 def adhesive_hills_error(doubted: Floats, held: Floats, largest: float) -> Floats:
     """Return what JKR adds to the error of hills at each step, over the largest force [1]; 1 where that is 0.
 
-    ``doubted`` are the pull-off forces of hills that JKR has out of contact and that attraction with a range may have
-    pulled into it, and of those whose contacts overlap, of which it does not know how they merge; ``held`` are those of
-    other contacts, shape (n,) each; ``largest`` is the largest force [N].
+    ``doubted`` is the sum of the pull-off forces of hills out of contact in JKR that attraction with a range may have
+    pulled into contact, and of hills whose contacts overlap and may merge; ``held`` is that of all other contacts,
+    shape (n,) each; ``largest`` is the largest force [N].
     """
     off = doubted + _HELD * held
     return np.where(off < largest, off / (largest or 1.0), (off > 0.0).astype(float))

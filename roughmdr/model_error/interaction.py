@@ -1,4 +1,4 @@
-"""The error of the force of asperities that do not feel each other, and how many of their contacts overlap."""
+"""The error of the force of independent asperities, and the share of their contacts that overlap."""
 
 import math
 from typing import NamedTuple
@@ -34,8 +34,8 @@ SUMMITS = Coefficients(low=1.5, typical=1.9, estimate=2.0)
 """Coefficients of the summits of a continuous surface, whose flanks are no paraboloids."""
 
 TENSION, MOST_TENSION = 0.2, 1.1
-"""The error of the pull-off force, of either sign, over the square root of the contact fraction there, as it typically
-is, and what it exceeds in one case of ten: of JKR asperities coupled in pairs (``pipelines/oracles/pairwise.py``)."""
+"""The error of the pull-off force, of either sign, over the square root of the contact fraction there: typical size,
+and size exceeded in one case of ten, against JKR asperities coupled in pairs (``pipelines/oracles/pairwise.py``)."""
 
 
 HILLS = Coefficients(low=0.5, typical=3.0, estimate=10.0)
@@ -46,7 +46,7 @@ OF_ORIGIN: dict[Origin, Coefficients] = {"asperities": ASPERITIES, "summits": SU
 
 
 def interaction_error(contact_fraction: Floats, coefficients: Coefficients = ASPERITIES) -> Floats:
-    """Return by how much the force of independent asperities is off, over the true force [1].
+    """Return the error of the force of independent asperities over the true force [1].
 
     ``contact_fraction`` is the summed contact area over the nominal area, shape (n,). Where boundary elements find full
     contact, from 0.3 to 0.5 on, the error is the whole force.
@@ -55,21 +55,21 @@ def interaction_error(contact_fraction: Floats, coefficients: Coefficients = ASP
 
 
 def poisson_overlap(radius: Floats, nominal_area: float) -> float:
-    """Return the share of contacts that reach into a neighbour's, of contacts placed at random, from their radii [m].
+    """Return the share of randomly placed contacts that overlap a neighbour, from their radii [m].
 
     Of n contacts per area one of radius a has no such neighbour with the probability exp(-n pi <(a + a')^2>).
     """
     side = math.sqrt(nominal_area)
     a = radius / side
-    with np.errstate(over="ignore"):  # of infinitely many, all do
+    with np.errstate(over="ignore"):  # of infinitely many contacts all overlap
         reached = math.pi * a.size * (a * a + 2.0 * a * np.mean(a) + np.mean(a * a))
     return float(-np.mean(np.expm1(-reached)))
 
 
 def overlap_share(x: Floats, y: Floats, radius: Floats) -> float:
-    """Return the share of contacts that reach into a neighbour's, from centres and radii [m], shape (n,); > 0 each.
+    """Return the share of contacts that overlap a neighbour, from centres and radii [m], shape (n,); > 0 each.
 
-    Each contact is held against the nearest centres of every size, sizes in classes of a factor of two.
+    Each contact is compared with the nearest centres of every size, in classes of a factor of two.
     """
     from scipy.spatial import cKDTree
 

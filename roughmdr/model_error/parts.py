@@ -11,10 +11,10 @@ from roughmdr.model_error.interaction import OF_ORIGIN, interaction_error
 from roughmdr.numerics.arguments import Floats
 
 TRUSTED_FRACTION = 0.02
-"""Contact fraction up to which a force is told to be right within an error: by interaction 22 %, typically 12 %."""
+"""Contact fraction up to which a result is called trusted: the error by interaction is 22 % at most, typically 12 %."""
 
 TRUSTED_ERROR = 0.02
-"""Error by interaction up to which the force of coupled asperities is told to be right."""
+"""Error by interaction up to which the force of coupled asperities is called trusted."""
 
 _SLACK = 1.01  # a path that ends at this contact fraction is trusted all along
 
@@ -30,11 +30,11 @@ PARTS = {
 
 
 class Assumptions(NamedTuple):
-    """How far the contacts of an ensemble strain the assumptions of the model where the flat is closest."""
+    """Departures of an ensemble from the assumptions of the model, where the flat is closest."""
 
     limits: ValidityLimits
     jkr_error: float = 0.0
-    """About the error of JKR's force of all contacts [N]; 0 where it is not used."""
+    """Estimated error of JKR's force of all contacts [N]; 0 where JKR is not used."""
     resolution_error: float = 0.0
     """The relative error of the force that the resolution of a map causes."""
     border_error: float = 0.0
@@ -44,18 +44,18 @@ class Assumptions(NamedTuple):
     overlap: float = math.nan
     """Share of the contacts that reach into a neighbour's; NaN where it is not known."""
     coupling_error: Floats | None = None
-    """The error of asperities that are coupled, at each step; None of independent ones."""
+    """The error of coupled asperities at each step; None for independent ones."""
     conductance_error: Floats | None = None
-    """That of their conductance; None likewise."""
+    """The error of their conductance; None for independent ones."""
     neighbours_error: Floats | None = None
-    """The error of independent ones as their distances tell it, at each step; None where the contact fraction does."""
+    """The error of independent ones from their distances, at each step; None to take it from the contact fraction."""
 
 
 class ModelError(NamedTuple):
     """The estimated relative error of the force that the assumptions of the model cause."""
 
     curve: Floats
-    """At each step; NaN where the nominal area is not known."""
+    """The error at each step; NaN where the nominal area is not known."""
     parts: dict[str, float]
     """The largest of each of ``PARTS`` over the steps."""
     largest_fraction: float

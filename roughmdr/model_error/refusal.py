@@ -11,12 +11,12 @@ from roughmdr.numerics.arguments import Floats
 from roughmdr.schema.units import format_quantity
 
 LARGE_FRACTION = 0.05
-"""Contact fraction above which there is a warning: the force is off by 19 % there, typically, at most by some 36 %."""
+"""Contact fraction above which there is a warning: the error of the force is typically 19 %, at most some 36 %."""
 OVERLAPPED_FRACTION = 0.3
 """Contact fraction above which most contacts overlap, so that the sum of their areas is no contact area any more."""
 
 _CROWDED = 0.36
-"""Error of the force by the distances of asperities above which there is a warning: that of even cover at
+"""Error of the force by the distances of asperities above which there is a warning: that of evenly spread ones at
 ``LARGE_FRACTION``."""
 
 _SOFT = 1e3  # Pa: softer than gels, so that a prefix of the unit may be missing
@@ -25,15 +25,15 @@ _SIDES = 0.1  # contact radius, over the side of the patch, above which one cont
 
 
 class Givens(NamedTuple):
-    """Numbers of a scene that the cause of too large a contact fraction is looked for in, in SI."""
+    """Numbers of a scene, in SI, among which the cause of too large a contact fraction is sought."""
 
     effective_modulus: float
     work: float
     height_std: float
     nominal_area: float
-    """NaN where it is not known."""
+    """Nominal area [m2]; NaN where it is not known."""
     contact_radius: float
-    """The largest."""
+    """The largest contact radius [m]."""
 
 
 def check_contact_fraction(fraction: Floats, separation: Floats, givens: Givens) -> None:
@@ -50,7 +50,7 @@ def check_contact_fraction(fraction: Floats, separation: Floats, givens: Givens)
 
 
 def likely_cause(separation: float, givens: Givens) -> str:
-    """Return what in a scene is likely to be wrong, where its contacts cannot be at a separation [m]."""
+    """Return the likely mistake in a scene whose contacts are impossible at a separation [m]."""
     modulus, work = format_quantity(givens.effective_modulus, "Pa"), format_quantity(givens.work, "J/m^2")
     causes = []
     if givens.work > 0.0 and givens.effective_modulus < _SOFT:

@@ -28,13 +28,13 @@ from roughmdr.springs.profile import FunctionProfile, ShapeProfile
 Results = dict[str, Floats]
 
 _COUNT_MIN, _COUNT_MAX, _COUNT_MAX_OF_FUNCTION = 10, 10_000_000, 1_000_000
-_PER_OCTAVE = 8  # lengths that a row may have, from one to twice as long
-_TRIAL_SPRINGS = 64  # with which lengths are estimated
+_PER_OCTAVE = 8  # lengths of rows per factor of 2
+_TRIAL_SPRINGS = 64  # springs by which lengths are estimated
 _LENGTH_NUMBER_MAX = 498 * _PER_OCTAVE  # the longest is 2^498 m, the shortest 2^-498 m
 
 
 class Row(NamedTuple):
-    """The springs on one side of the axis at (i + 1/2) dx, and one more just outside."""
+    """The springs on one side of the axis at (i + 1/2) dx, with one more outside the row."""
 
     spacing: float
     g: Floats  # MDR profile [m] at each
@@ -182,7 +182,7 @@ class Springs(NamedTuple):
     def fitted(self, targets: Floats, loaded: bool) -> Iterator[tuple[Row, Ints, Ints]]:
         """Yield a row of fitting length for each group of targets: it, their indices, and the springs in contact.
 
-        Targets are indentations [m] or, if ``loaded``, forces over 2 E* [m2]. As on retraction the contact ends with
+        Targets are indentations [m] or, if ``loaded``, forces over 2 E* [m2]. On retraction the contact ends with
         the last spring that can be in contact. Targets under which none can are in no group.
         """
         numbers, waiting = self._length_numbers(targets, loaded)
@@ -191,7 +191,7 @@ class Springs(NamedTuple):
             group = np.flatnonzero(waiting & (numbers == number))
             row = self.row(min(2.0 ** (number / _PER_OCTAVE), self.profile.limit))
             thresholds = row.release_load if loaded else row.release_indentation
-            too_short = thresholds[-1] <= targets[group]  # the one outside would be in contact too
+            too_short = thresholds[-1] <= targets[group]  # the spring outside the row would be in contact too
             numbers[group[too_short]] += 1
             group = group[~too_short]
             waiting[group] = False
@@ -200,7 +200,7 @@ class Springs(NamedTuple):
     def _length_numbers(self, targets: Floats, loaded: bool) -> tuple[Ints, NDArray[np.bool_]]:
         """Return numbers of lengths 2^(number/_PER_OCTAVE) [m] that no contact exceeds, and where there can be contact.
 
-        Where the stretch dl does not bridge the gap to the profile, it does not further out either.
+        Where the stretch dl is less than the gap to the profile, it is so further out as well.
         """
         low = math.floor(_PER_OCTAVE * math.log2(self.profile.start))
         bounds = self._lower_bounds(low, low + _PER_OCTAVE, loaded)

@@ -14,7 +14,7 @@ from roughmdr.shapes import Shape
 _FALL_ROUNDING = 1e-12  # fall of a function f, over the highest f, that counts as rounding
 _DIP_ROUNDING = 1e-9  # fall of g, over the largest g, that counts as rounding
 _BLOCK = 64  # edges in the smallest block
-_POINTS = 20  # for a block: at the distance of its width, (3 + sqrt(8))^-20 is below a rounding
+_POINTS = 20  # Chebyshev points of a block: at the distance of its width, (3 + sqrt(8))^-20 is below a rounding
 _CHUNK = 1 << 19  # numbers in memory at once
 
 _NODES = 0.5 - 0.5 * np.cos(np.pi * (np.arange(_POINTS) + 0.5) / _POINTS)
@@ -54,7 +54,7 @@ class ShapeProfile:
         return g
 
     def at(self, x: Floats, springs: int) -> tuple[Floats, Floats]:
-        """Return g [m] and G = ∫_0^x g dx [m2] at radii [m], as right as so many springs are; inf and 0 beyond."""
+        """Return g [m] and G = ∫_0^x g dx [m2] at radii [m], as exact as so many springs; inf and 0 beyond."""
         g, G, inside = np.full_like(x, np.inf), np.zeros_like(x), x < self.limit
         g[inside], G[inside] = self.shape.g(x[inside]), self.shape.G(x[inside])
         return g, G
@@ -134,7 +134,7 @@ def mdr_transform(heights: Floats) -> Floats:
     size, moments = _BLOCK, blocks[:, 1:] @ _weights(np.arange(_BLOCK) / _BLOCK)
     while moments.shape[1] > 2:
         block = np.arange(count) // size
-        for back in (2, 3):  # the third before is not in the larger block that counts for all, where the number is odd
+        for back in (2, 3):  # for odd numbers the third block before is not yet in a larger one
             far = np.flatnonzero((block >= back) & ((block % 2 == 1) | (back == 2)))
             source = block[far] - back
             _add(g, far, source, moments, size * source, size * _NODES)

@@ -1,4 +1,4 @@
-"""Sections of a scene that make another law of that of its contacts, or add to it: one class each."""
+"""Sections of a scene that change the law of its contacts, or add to it: one class each."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -11,7 +11,7 @@ from roughmdr.stages.tangential import Tangential
 from roughmdr.stages.viscoelastic import Viscoelastic
 
 STAGES: tuple[type[Stage], ...] = (Nominal, Viscoelastic, Tangential, Conduction, Reference)
-"""All stages, innermost first: each makes its law of that of those before it."""
+"""All stages, innermost first: each makes its law from the law of the one before."""
 
 
 def stages_in(table: Mapping[str, Any]) -> list[type[Stage]]:

@@ -1,4 +1,4 @@
-"""A scene without a sweep, as far as stages ask for it: they are below the scene, which is made of them."""
+"""The parts of a scene without a sweep that stages use: a protocol, since scenes import stages."""
 # ruff: noqa: D102  # its properties are those of ``scene.content.Sections``
 
 from typing import TYPE_CHECKING, Any, Protocol, TypeVar
@@ -13,7 +13,7 @@ AnySection = TypeVar("AnySection", bound=Section)
 
 
 class Given(Protocol):
-    """A scene without a sweep, as far as stages ask for it."""
+    """The parts of a scene without a sweep that stages use."""
 
     @property
     def seed(self) -> int: ...

@@ -119,7 +119,7 @@ class _Nominal(Stage):
         return list(NOMINAL_VARIABLES)
 
     def clear_above(self, scene: Given) -> float:
-        """Return how far the half-space, too, is drawn up before it detaches [m]."""
+        """Return the height [m] to which the half-space is drawn up before it detaches."""
         if scene.work == 0.0:
             return 0.0
         from roughmdr.asperity.contact import Contact
@@ -163,7 +163,7 @@ def _listed(shape: type[Shape]) -> str:
 
 
 def _against_adhesion(adhesion: Adhesion, asperity: type[Shape]) -> str:
-    """Return why rings cannot remember the contacts of such asperities; empty where they can."""
+    """Return why the memory of a ring cannot hold contacts of such asperities; empty where it can."""
     if adhesion.work == 0.0:
         return ""
     if adhesion.model != "jkr":

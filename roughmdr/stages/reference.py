@@ -148,7 +148,7 @@ class Reference(Stage):
 
     @classmethod
     def result_lines(cls, result: Any) -> Iterator[tuple[str, str]]:
-        """Yield how far the mean force is off the reference, where that bears at least ``LIGHT`` of the largest."""
+        """Yield the deviation of the mean force from the reference, where that is at least ``LIGHT`` of the largest."""
         name = next(
             (each for each in ("force", "pressure") if result.holds(each) and result.holds(f"reference_{each}")), None
         )
@@ -177,7 +177,7 @@ class Reference(Stage):
 
 
 def _remarks(error: float, asked: float, shape: tuple[int, int], lost: int) -> list[str]:
-    """Return how far boundary elements fall short."""
+    """Return the warnings that boundary elements miss the error asked for, or have no equilibrium."""
     lines = []
     nx, ny = shape
     if math.isinf(error):

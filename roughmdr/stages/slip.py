@@ -104,7 +104,7 @@ class FirstCurve(NamedTuple):
     normal: dict[str, Floats]
     """The normal law at each of ``separation``."""
     separation: Floats
-    """That which is held, and those of the normal contacts whose contacts are the stick discs [m]."""
+    """The constant separation [m], and those at which the normal contacts are the stick discs."""
     tangential: SlipConstants
 
     @property

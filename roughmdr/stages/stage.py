@@ -1,8 +1,7 @@
 """Stage: the base of sections of a scene that change the law of its contacts, or add to it.
 
-A stage is a table of the scene. Whatever the program asks of such a section, it asks through the methods below, each of
-which has an answer for a section that changes nothing. None of them imports physics before it is needed: scenes are
-read without.
+A stage is a table of the scene. The program uses such a section through the methods below alone, whose defaults suit a
+section that changes nothing. None of them imports physics before it is needed: scenes are read without it.
 """
 
 import math
@@ -30,16 +29,16 @@ class Drawn(NamedTuple):
 
 
 class Contacts(NamedTuple):
-    """The contacts that a stage makes its law of."""
+    """The contacts whose law a stage changes."""
 
     law: Law
-    """Their law, with what inner stages made of it."""
+    """Their law, as inner stages changed it."""
     highest: Callable[[], float]
     """Return the height of the highest summit [m]; -inf where there is none."""
     nominal_area: float | None
     """[m2]"""
     drawn: Drawn | None = None
-    """The asperities themselves; None of an expected law, and where the law of a part of them is foreseen."""
+    """The asperities themselves; None for an expected law, and where ``plan`` foresees the law from a part of them."""
 
 
 class Stage(Section):
@@ -60,7 +59,7 @@ class Stage(Section):
     on_grid: ClassVar[bool] = False
     """Whether it presses the surface itself by boundary elements, which takes the positions of the asperities."""
     flat: ClassVar[bool] = True
-    """False where the section brings a body of its own in place of the flat, of which only the expected law exists."""
+    """False where the section replaces the flat by another body, which exists for the expected law only."""
     unlike: ClassVar[str] = ""
     """How the law differs from that of elastic contacts under a flat, the only one that theories and coupling describe,
     in words; empty if it does not.
@@ -72,7 +71,7 @@ class Stage(Section):
     own_variables: ClassVar[tuple[str, ...]] = ()
     """Variables of [output] that a scene without the section does not have."""
     about_absent: ClassVar[str] = ""
-    """Part that is left out of a scene without the section."""
+    """Name of the part of physics that a scene without the section leaves out."""
     noted: ClassVar[str] = ""
     """Attribute of results, and name in summaries, of ``notes``; one of ``RESULT_ATTRIBUTES``."""
 
@@ -148,7 +147,7 @@ class Stage(Section):
     def beside(self, scene: Given, separations: int, *, finest: bool) -> tuple[float, float]:
         """Return about how long [s] and how much memory [byte] the section adds to each realisation.
 
-        That is with the grids it begins with, or with the ``finest``, which few and small contacts may need.
+        With the grids it begins with, or with the ``finest``, which few and small contacts may need.
         """
         return 0.0, 0.0
 
@@ -165,7 +164,7 @@ class Stage(Section):
     def law(self, scene: Given, contacts: Contacts) -> Law:
         """Return the law of a scene from that of its contacts.
 
-        Under a machine that one has found the separations: a section that changes the force does not go with one.
+        Under a machine the law of the contacts finds the separations: a section that changes the force excludes one.
         """
         return contacts.law
 

@@ -21,9 +21,9 @@ if TYPE_CHECKING:
     from roughmdr.numerics.arguments import Floats
     from roughmdr.stages.slip import SlipConstants
 
-_RATIOS = 0.5, 1.5  # isotropic bodies have 2/3 (nu = 1/2) to 4/3 (nu = -1)
+_RATIOS = 0.5, 1.5  # allowed G*/E*: isotropic bodies have 2/3 (nu = 1/2) to 4/3 (nu = -1)
 _STICKING, _LONE_RADIUS = "tangential_stiffness", "contact_radius_sum"
-_ISOTROPIC = ("random", "nayak")  # sources whose asperities stand in no direction rather than in another
+_ISOTROPIC = ("random", "nayak")  # sources without a preferred direction
 _COUPLED = (
     "contacts that feel each other begin to slip at different displacements; the scene without path.lateral gives "
     "their tangential_stiffness before any slips, without [interaction] it gives slip"
@@ -117,12 +117,12 @@ class Tangential(Stage):
             yield "slip is taken to go along the displacement, as where Poisson's ratio is 0"
 
     def ratio(self, scene: Given) -> float | None:
-        """Return G*/E* [1]; None where nothing tells it."""
+        """Return G*/E* [1]; None where it is not known."""
         bodies = _bodies_of(scene)
         return self.stiffness_ratio if bodies is None else stiffness_ratio(*bodies)
 
     def constants(self, scene: Given) -> "SlipConstants":
-        """Return the constants of the contacts, of a scene that tells G*/E*."""
+        """Return the constants of the contacts, for a scene with a known G*/E*."""
         from roughmdr.stages.slip import SlipConstants
 
         ratio = self.ratio(scene)
@@ -130,7 +130,7 @@ class Tangential(Stage):
         return SlipConstants(scene.effective_modulus, ratio, math.nan if self.friction is None else self.friction)
 
     def inner_variables(self, names: list[str]) -> list[str]:
-        """Return the variables of the normal law that lateral forces follow from."""
+        """Return the variables of the normal law that lateral forces need."""
         from roughmdr.stages.slip import normal_variables
 
         return normal_variables(names)
@@ -138,7 +138,7 @@ class Tangential(Stage):
     def law(self, scene: Given, contacts: Contacts) -> Law:
         """Return the law with lateral forces, where it is asked for them.
 
-        OutOfRange as ``partial_slip``, or where no separation bears the load that is held.
+        OutOfRange as ``partial_slip``, or where no separation bears the constant load.
         """
         from roughmdr.loading.lateral import LateralPath
         from roughmdr.loading.path import LoadingPath
@@ -212,7 +212,7 @@ def _bodies_of(scene: Given) -> tuple[float, ...] | None:
 
 
 def _separation(normal: Law, path: "LateralPath") -> float:
-    """Return the separation [m] that is held, or at which what is held is borne."""
+    """Return the constant separation [m], or that at which the constant load is borne."""
     from roughmdr.loading.path import LoadingPath
 
     if isinstance(path.held, LoadingPath):

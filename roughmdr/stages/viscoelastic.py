@@ -115,7 +115,7 @@ class Viscoelastic(Stage):
 
     @classmethod
     def left_out(cls, scene: Given, section: "Viscoelastic | None") -> Iterator[str]:
-        """Yield that nothing remembers, of contacts that do not adhere."""
+        """Yield the line on relaxation, for contacts without adhesion."""
         if section is None and scene.work == 0.0:
             yield "hysteresis: without adhesion a contact has no memory"
             yield "time: elastic bodies do not relax; the scene has no [viscoelastic]"
@@ -143,7 +143,7 @@ class Viscoelastic(Stage):
         def law(path: "Path", names: list[str]) -> "LoadSeparation":
             assert isinstance(path, LoadingPath)  # ``check`` makes sure
             _check_order(path.separation)
-            clear = float(np.nextafter(contacts.highest(), np.inf))  # a contact at first touch is none there
+            clear = float(np.nextafter(contacts.highest(), np.inf))  # at first touch there is no contact yet
             area = contacts.nominal_area
             return viscoelastic_law(elastic, path.separation, names, body, clear=clear, nominal_area=area)
 

@@ -17,7 +17,7 @@ def check_memory(size: float, what: str, advice: str = "") -> None:
 
 
 def describe_available_memory() -> str:
-    """Return how much memory is left, and of what, in words."""
+    """Return how much memory is left, and what limits it, in words."""
     left, limit = available_memory()
     return f"{format_bytes(max(left, 0.0))} left of {limit or 'an unknown amount'}"
 
@@ -29,7 +29,7 @@ def available_memory() -> tuple[float, str]:
 
 def peak_memory() -> float:
     """Return the most memory that this process has had so far [byte]; 0 if it is not known."""
-    # From /proc where there is one, since getrusage counts the process that this one was forked from too.
+    # From /proc where there is one, since getrusage also counts the parent process before a fork.
     if peak := _read_sizes("/proc/self/status").get("VmHWM"):
         return peak
     with suppress(ImportError):

@@ -22,7 +22,7 @@ from roughmdr.shapes.profile import Profile
 _ROUNDING = 1e-12  # slope of the tip or jump of slope, over the slope at the edge, below which it is a rounding error
 _DEPTH_MIN, _DEPTH_MAX, _STEPS_PER_DECADE = 1e-6, 10.0, 8  # depths, over a radius, at which the largest shear is sought
 _POWER = {PRESSURE: 1, DISPLACEMENT: 0, STEEP: 1, DEEP: 1, STEEP_TURN: 2, DEEP_TURN: 2}
-"""The power of a length that a weight is divided by."""
+"""Power of a length by which each weight is divided."""
 
 
 class HalfSpace(NamedTuple):
@@ -86,7 +86,7 @@ class HalfSpace(NamedTuple):
         return self.radius > 0.0 and self.slope(0.0) > _ROUNDING * self.slope(self.radius / self.width)
 
     def singular(self) -> dict[float, str]:
-        """Return the radii [m] where the pressure is infinite, and what lies there."""
+        """Return the radii [m] where the pressure is infinite, with the reason of each."""
         infinite: dict[float, str] = {}
         if self.radius == 0.0:
             return infinite
@@ -141,7 +141,7 @@ class HalfSpace(NamedTuple):
         return np.asarray(weights[kind] / d ** _POWER[kind])
 
     def below(self, kind: int, depth: Floats) -> Floats:
-        """Return ``total`` of the weights on the axis; 0 without contact, that of p(0) on the surface."""
+        """Return ``total`` of the weights on the axis, on the surface from p(0); 0 without contact."""
         totals = np.zeros_like(depth)
         if self.radius > 0.0:
             deep = depth > 0.0

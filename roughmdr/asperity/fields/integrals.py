@@ -68,7 +68,7 @@ class FieldKernels(ModuleType):
 
 
 kernel = FieldKernels("kernel")
-"""Stands for the kernels of a shape in those that ``specialise`` is given."""
+"""Stands for the kernels of a shape in the functions that ``specialise`` is given."""
 
 _NODES, _WEIGHTS = gauss(20)
 _TAIL = last_coefficients(20)

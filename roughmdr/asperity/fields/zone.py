@@ -58,12 +58,12 @@ class Zone(NamedTuple):
         return cls(width * edge[1], width * edge[2], pull, strength, float(edge[0]))
 
     def pressure_share(self, r: Floats) -> Floats:
-        """Return what the zone adds to pi p/E* at radii [m] within the contact."""
+        """Return the part of the zone in pi p/E* at radii [m] within the contact."""
         leg = np.sqrt(self.inner - r) * np.sqrt(self.inner + r)
         return np.asarray(-self.pull * np.arctan2(self.extent, leg))
 
     def displacement_share(self, r: Floats) -> Floats:
-        """Return what the zone adds to pi u/2 [m] at radii [m] from the edge of the contact on: -beta Z(r)."""
+        """Return the part of the zone in pi u/2 [m] at radii [m] outside the contact: -beta Z(r)."""
         within = r <= self.outer
         share = np.empty_like(r)
         share[within], share[~within] = self._within(r[within]), self._beyond(r[~within])

@@ -137,7 +137,7 @@ def energy_power(t: float, n: float) -> float:
 
 @njit
 def relative_errors(n: float) -> tuple[float, float]:
-    """A rounding of t moves t^(n + 1) by n + 1 of them."""
+    """The error of the force: a rounding of t changes t^(n + 1) by n + 1 roundings."""
     return _KERNEL_ERROR + 4.0 * ROUNDING * n, 0.0
 
 

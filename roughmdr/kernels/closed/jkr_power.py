@@ -156,7 +156,7 @@ def radius_of_force(x: float, n: float) -> float:
 def state_of_force(x: float, n: float) -> float:
     """l at x = 1 - P/P_c >= 0, on the branch that is stable under dead load, where l = (ln 3)/e at x = 0.
 
-    Near n = 1/2 that is a large number, so that ``radius_of_force`` is the better way to a.
+    Near n = 1/2 that is a large number, so that ``radius_of_force`` gives a with more digits.
     """
     e = 2.0 * n - 1.0
     return dd.LOG_3[0] / e + stable_log_tau(x, e / 3.0) / 3.0
@@ -213,7 +213,7 @@ def energy(l: float, n: float) -> float:
 def force_scales(effective_modulus: float, work: float, width: float, rise: float, n: float) -> tuple[Pair, float]:
     """|P_c| [N] under dead load, P_c = -2 E* a_c dl(a_c) tau_P^3 e/(2 n + 2), and a_P [m]; 0 if not representable.
 
-    All in logarithms: near n = 1/2 these can be ordinary where a_c is not.
+    All in logarithms: near n = 1/2 these can be ordinary floats where a_c is not.
     """
     e = dd.two_sum(2.0 * n, -1.0)
     length, power = _length(effective_modulus, work)

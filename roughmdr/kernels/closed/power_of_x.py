@@ -13,7 +13,7 @@ from roughmdr.numerics.jit import compiled, njit
 from roughmdr.numerics.vector_math import LOG_2_HIGH, LOG_2_LOW, power_and_log, scale_and_growth
 
 _SMALLEST_NORMAL = float(np.finfo(np.float64).tiny)
-_RAISED_BY, _RAISED = 54.0, 2.0**54  # makes all floats normal
+_RAISED_BY, _RAISED = 54.0, 2.0**54  # power of two, and its exponent, that makes all floats normal
 _LOG_MAX, _LOG_MIN = 709.0, -708.0  # natural logarithms of the largest and the smallest normal float
 _power_and_log, _scale_and_growth = (compiled(part, small=True) for part in (power_and_log, scale_and_growth))
 _vector = partial(njit, small=True)

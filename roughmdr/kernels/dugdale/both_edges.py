@@ -71,7 +71,7 @@ def newton_at_end(s: float, m: float, wanted: float, params: Floats) -> tuple[fl
 
 
 def room(s: float, m: float, params: Floats) -> float:
-    """m, or the way of m to the end of the profile where that is shorter: next to it the gap goes as a root."""
+    """m, or its distance to the end of the profile where that is shorter: next to the end the gap goes as a root."""
     if kernel.end < math.inf and s > 1.0:
         way = kernel.widest_zone(kernel.contact_edge(s, params)[1]) - m
         return min(m, way) if way > 0.0 else m
@@ -95,7 +95,7 @@ def both_edges(x: float, s: float, m: float, params: Floats) -> tuple[bool, floa
 
 
 def edges_at(x: float, branch: float, params: Floats) -> tuple[bool, float, float]:
-    """Whether s and m at x on a branch are found together; then both."""
+    """Whether Newton's method on both edges finds s and m at x on a branch; then both."""
     if branch < params[COUNT] or x <= params[LAST_X]:
         return False, 0.0, 0.0
     s, m = kernel.guess_both(x, params)

@@ -1,7 +1,7 @@
 """The stable branches under adhesion with a range: where the controlled quantity grows along the equilibria.
 
-The slope is looked at in growing steps of the state, and where the profile turns softer or stiffer, since contacts
-may be stable there only; its sign changes between them are solved for. Notation of ``layout``.
+The slope is evaluated in growing steps of the state, and where the profile turns softer or stiffer, since contacts
+may be stable there only; its sign changes are solved for. Notation of ``layout``.
 """
 
 import math
@@ -10,18 +10,18 @@ from roughmdr.kernels.profile.interface import kernel
 from roughmdr.kernels.profile.layout import CONTROL, COUNT, DEPTH, FOLD, MAX_BRANCHES, ONSET, RANGE, UNIT
 from roughmdr.numerics.arguments import Floats
 
-_FIRST = 2.0**-24  # the first state looked at; contact begins at 1
-_FIRST_STEP = 2.0**-8  # beyond it
+_FIRST = 2.0**-24  # first state that is tried; contact begins at 1
+_FIRST_STEP = 2.0**-8  # least step beyond the begin of contact
 _STEP_ON_FLAT = 1.0 / 16.0
 _THIN_ZONE = 0.1  # m/a: with a thinner zone a contact is as in JKR, and has no further branch
-_LARGEST = 1e140  # its square is a float
+_LARGEST = 1e140  # largest state; its square is a float
 _RTOL = 4e-16
 _MAX_ITERATIONS = 200
 _NEAR_END = 1.0 - 1e-9  # largest a, over the end of the profile: beyond, c and a are the same float
 
 
 def next_trial(s: float, params: Floats) -> float:
-    """The next state to look at."""
+    """The next state to try."""
     if s < 1.0:
         return max(2.0 * s, _FIRST)
     if kernel.flat and s < 2.0:
@@ -79,7 +79,7 @@ def find_branches(params: Floats) -> None:
             return
         a = 0.0
         if s > 1.0:
-            near = m * (m / m_before) if m_before > 0.0 else 0.0  # as by a power law in steps that grow
+            near = m * (m / m_before) if m_before > 0.0 else 0.0  # extrapolated as a power law in growing steps
             edges = kernel.zone_edge_near(s, near, params)
             a, m, m_before = edges[1], edges[2], m
             _, _, rise, _, growth = kernel.state_between(edges, params)

@@ -1,6 +1,6 @@
-"""The initial guess for Newton's method on both edges: a table of both, as that of ``profile.initial_guess`` of one.
+"""The initial guess for Newton's method on both edges: a table like that of ``profile.initial_guess``, with two values.
 
-Each node has s and m, each before its slope over the part of an octave that begins there. Notation of ``both_edges``.
+Each node has s and m, both with their slopes over the part of an octave that begins there. Notation of ``both_edges``.
 """
 
 import math

@@ -144,7 +144,7 @@ def stiffness(s: float, params: Floats) -> float:
 
 @njit
 def adhesion_terms(a: float, params: Floats) -> tuple[float, float]:
-    """Upper bounds of what adhesion takes from delta/b and from P over 2 E* b^2."""
+    """Upper bounds of the parts of adhesion in delta/b and in P over 2 E* b^2."""
     return params[STRENGTH], params[STRENGTH]
 
 

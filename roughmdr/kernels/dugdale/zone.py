@@ -23,7 +23,7 @@ _Z, _WEIGHT = unit_gauss(40)
 _NODES = _Z**3 * (10.0 - 15.0 * _Z + 6.0 * _Z**2)
 _PANEL_RATIO = 8.0  # largest ratio of the ends of a panel
 _THIN = 0.01  # m/a: in a thinner zone g(x) - g(a) has too few digits
-_STEEP = 6.0  # _STEEP/sqrt(n) is the psi at which (x/c)^n is below rounding
+_STEEP = 6.0  # psi times sqrt(n) from which on (x/c)^n is below rounding
 _NEAREST = 1e-8  # distance to the end of the profile, over it; its square is below rounding
 _BEFORE = 1.0 - 2.0**-53  # largest radius over the end of the profile: up to there g is finite
 _UNBOUNDED = 1e100  # stands for infinity
@@ -94,7 +94,7 @@ def zone_quadrature(a: float, g: float, m: float, params: Floats) -> tuple[float
         piece = kernel.of_pieces and i < count
         if begin > low:
             high = min(begin, c)
-            while base > 0.0 and _PANEL_RATIO * low < high:  # so that g is as smooth on each panel
+            while base > 0.0 and _PANEL_RATIO * low < high:  # panels on which g is equally smooth
                 parts = kernel.zone_panel((low, _PANEL_RATIO * low, base, piece), g, c, beside, thin, params)
                 j, k, l = j + parts[0], k + parts[1], l + parts[2]
                 low = _PANEL_RATIO * low

@@ -1,4 +1,4 @@
-"""Where the contact and the cohesive zone of any profile end, along all equilibria. Notation of ``equilibrium``."""
+"""The edges of contact and cohesive zone, for any profile, along all equilibria. Notation of ``equilibrium``."""
 
 import math
 
@@ -12,13 +12,13 @@ from roughmdr.numerics.vector_math import atan
 
 _atan = compiled(atan, small=True)
 
-_RTOL_STEP = 1e-9  # its square is below rounding
+_RTOL_STEP = 1e-9  # last step over m: the error left, its square, is below rounding
 _WIDE = 0.5 * math.pi - 1.0  # m theta - c + a over m where a is small
 _LEAST_SHARE = 1e-2  # least share of m that is left after a step
-_NEXT_TO_AXIS = 0.3  # a over the cohesive radius where contact begins
+_NEXT_TO_AXIS = 0.3  # largest a next to the axis, over the cohesive radius where contact begins
 _ROUNDING = 1e-15
 _MAX_ITERATIONS = 100
-_LARGEST = 1e150  # its square, and that of its inverse, is a float
+_LARGEST = 1e150  # largest number whose square, and that of its inverse, is a float
 
 
 def find_junction(params: Floats) -> bool:

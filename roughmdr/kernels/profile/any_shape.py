@@ -1,6 +1,6 @@
-"""Kernels of any shape, compiled once, which call the functions of a shape by the addresses that its rows lead to.
+"""Kernels of any shape, compiled once, which call the functions of a shape by addresses in its rows.
 
-They do what is done once an asperity, or where steps do not lead to a state, and in sums a block at a time.
+A call by address is for work once an asperity, or where steps do not lead to a state, or for a block of a sum.
 """
 
 from collections.abc import Callable
@@ -44,7 +44,7 @@ OF_SHAPE = {
     *functions_of(equilibrium, elastic),
     *("newton_step", "one_step", "two_steps", "approach", "one_step_all", "note_shape", "steepness", "state_of_radius"),
 } - {"prepare", "y_of_x", "x_of_y", "relative_errors", "adhesion_terms"}
-"""Parts that are compiled for each shape all the same."""
+"""Parts that are compiled for each shape nevertheless."""
 
 
 @once

@@ -57,9 +57,7 @@ _VECTOR_CODE_OF_PARABOLOID: set[Callable[..., Any]] = {
 def _vector_code(
     shape: type[Shape], profile: Profile, plain: dict[str, Any], cohesive: bool
 ) -> dict[str, Callable[..., Any]]:
-    """Return those functions of a profile that become vector code where they are inlined; what a table looks up does
-    not.
-    """
+    """Return those functions of a profile that become vector code where inlined; look-ups in a table do not."""
     vector: dict[str, Callable[..., Any]] = {}
     tabled = issubclass(shape, TabledShape)
     if not (shape.shared or tabled):

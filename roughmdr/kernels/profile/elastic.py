@@ -1,6 +1,6 @@
 """One asperity without adhesion, where ``equilibrium`` and ``initial_guess`` have a term of adhesion that is 0.
 
-Without adhesion the state is a function of x alone where width and rise say all of a shape: all asperities share a row.
+Without adhesion, asperities that differ in width and rise alone share a row: the state is a function of x.
 Notation of ``layout``.
 """
 
@@ -12,7 +12,7 @@ from roughmdr.kernels.interface import Columns, Material
 from roughmdr.kernels.profile.interface import kernel
 from roughmdr.numerics.arguments import Floats
 
-_PER_DEPTH = 2.0**28  # the octaves begin at its inverse of the depth
+_PER_DEPTH = 2.0**28  # inverse of the depth at which the octaves begin
 _REACH = 2.0**15  # distance, over the step, within which a kink makes the error larger: g may go as the power 3/2 there
 
 
@@ -42,8 +42,8 @@ def indentation_at(t: float, params: Floats) -> tuple[float, float]:
 
 
 def contact_near(t: float, x: float, params: Floats) -> tuple[float, float, float, float, float]:
-    """The state, a, P and k at x to first order from t, where all is evaluated, and about the square of their relative
-    distance, inf where there is a kink near (H 10, 16, 25; units as in ``radius_force_stiffness``).
+    """The state, a, P and k at x to first order from their values at t, about the square of their relative distance,
+    inf where there is a kink near (H 10, 16, 25; units as in ``radius_force_stiffness``).
     """
     a, da, g, dg = kernel.mdr_profile(t, params)
     off = x - g

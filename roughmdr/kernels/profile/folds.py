@@ -27,10 +27,10 @@ from roughmdr.kernels.profile.layout import (
 )
 from roughmdr.numerics.arguments import Floats
 
-_LARGEST = 1e140  # its square is a float
+_LARGEST = 1e140  # largest t; its square is a float
 _RTOL = 1e-15
-_HALVED = 12  # which of the steps halve the interval
-_LEAST = 0.1  # factor on an end
+_HALVED = 12  # every so many steps the interval is halved
+_LEAST = 0.1  # least factor on the value at an end
 # Nearer than _NEAR to a foot, relative to t, the controlled quantity above the foot is the integral of its slope, since
 # the difference has lost too many digits. Where its terms are above _SWING times the depth that distance is larger in
 # proportion, but at most _FARTHEST: up to there Gauss's rule is exact to rounding.

@@ -17,10 +17,10 @@ from roughmdr.numerics.vector_math import binade_cell
 
 _octave = compiled(binade_cell, small=True)
 
-_PER_DEPTH = 2.0**12  # without adhesion the octaves begin at its inverse of the depth
+_PER_DEPTH = 2.0**12  # inverse of the depth at which the octaves begin without adhesion
 _FINE = 4.0  # factor on the root in y: the larger, the more octaves next to the foot
 _MAX_ERROR = 1e-4  # error over the distance to the foot above which a node is solved for by itself
-_BEYOND = 2  # nodes: one at the end of its part, one as a rounding can lead into the next
+_BEYOND = 2  # more nodes: the end of the part, and one as a rounding can lead into the next
 _STEPS = 8  # steps of Newton's method for all rows together before that
 _CORNER = 1e-6  # slope of the control at a foot, over depth/foot, above which it is a corner, not a fold
 _BEND = 1e-4  # distance from a fold, over its state, within which the slope is linear
@@ -82,7 +82,7 @@ def x_of_y(y: float, params: Floats) -> tuple[float, float]:
 
 
 def extrapolate_node(node: int, step: float, params: Floats) -> float:
-    """t at a node, a ``step_to`` it away from the node before: t - foot is about an exponential of such steps."""
+    """t at a node, by a ``step_to`` from the node before: t - foot is about an exponential of such steps."""
     foot, before = params[LAST], kernel.first_node + kernel.node_size * (node - 1)
     way = params[before] - foot
     z = kernel.y_over_part(node - 1) * params[before + 1] * step / way if way > 0.0 else 0.0
@@ -139,7 +139,7 @@ def node_beyond(indentation: float, params: Floats) -> int:
 
 
 def fill_nodes(last: int, rows: Floats) -> None:
-    """Fill in the nodes up to ``last`` of all rows, each for all at a time, so that no row waits for another."""
+    """Fill in the nodes up to ``last``, each for all rows before the next, so that no row waits for another."""
     count = rows.shape[0]
     found = np.empty((3, count))
     t, error, per = found[0], found[1], found[2]

@@ -1,4 +1,4 @@
-"""The kernels that those of any profile are made of, beside the ones that loops call (``kernels.interface``).
+"""The parts of the kernels of any profile, beside the kernels that loops call (``kernels.interface``).
 
 In units of the shape's width and rise; ``params`` is a row as ``layout`` describes it.
 """
@@ -27,7 +27,7 @@ class ProfileKernels(Kernels):
     softens: bool
     """Whether sqrt(a) g'(a) may fall, so that there may be more than one branch with adhesion."""
     note_shape: Callable[[Floats], None]
-    """params -> None; fills in what is known of the shape, first what ``precompute`` does."""
+    """params -> None; fills in the entries of the shape, first those of ``precompute``."""
     elastic_integral: Kernel
     zone_integrals: Callable[..., tuple[float, float]]
     corner: bool
@@ -57,7 +57,7 @@ class ProfileKernels(Kernels):
     first_node: int
     """Index in a row of the first node of that table."""
     node_size: int
-    """How many numbers a node has."""
+    """Numbers of a node."""
     y_over_part: Callable[[int], float]
     y_of_node: Callable[[int], float]
     shortening: Callable[[int], float]
@@ -78,11 +78,11 @@ class ProfileKernels(Kernels):
     kink_between: Callable[..., bool]
     """(low, high, params) -> whether the indentation is not smooth for states from low to high."""
     stride: float
-    """By which factor the search for branches under adhesion with a range goes on."""
+    """Factor from one state to the next in the search for branches under adhesion with a range."""
     widest_zone: Kernel
     t_along: Kernel
     of_pieces: bool
-    """Whether g is, piece by piece, a polynomial in sqrt(x^2 - y^2), y as from ``breakpoint``."""
+    """Whether g is a piecewise polynomial in sqrt(x^2 - y^2), y from ``breakpoint``."""
     zone_panel: Callable[..., tuple[float, float, float]]
     rise_begins: Kernel
     zone_quadrature: Callable[..., tuple[float, float, float]]
@@ -112,4 +112,4 @@ class ProfileKernels(Kernels):
 
 
 kernel = ProfileKernels("kernel")
-"""Stands for the kernels in those that ``specialise`` is given."""
+"""Stands for the kernels in functions that ``specialise`` is given."""

@@ -8,8 +8,8 @@ Under adhesion with a range the state is s (``dugdale.equilibrium``) in place of
 MAX_BRANCHES = 8
 CANCELLED = 1e-4  # distance from a foot at t = 0, over the depth, within which four digits are lost
 
-# Indices from the end of a row: the parameters of the shape stand at its beginning. What a visit reads is on one cache
-# line or two.
+# Indices from the end of a row: the parameters of the shape stand at its beginning. All that a visit reads is on one or
+# two cache lines.
 TENSION = -1
 DEPTH = -2  # distance of the lowest foot below first touch, in the controlled quantity; 1 without adhesion
 COUNT = -3  # number of stable branches; 0 where they are too many, or not representable

@@ -14,7 +14,7 @@ _RTOL_STEP = 1e-8  # last step over the distance to the foot, and of the value: 
 _RTOL = 1e-16  # error of a converged state, over its distance to the foot
 _REACH = 64.0  # distance, over the first step, within which a kink makes the error larger than stated
 _MIN_DISTANCE = 1e-3  # share of the distance to the foot that is left after a step that would go beyond it
-_FREE_STEPS = 6  # then every third step is a bisection: where the slope changes much, Newton's method may not converge
+_FREE_STEPS = 6  # Newton steps before every third is a bisection: it may not converge where the slope changes much
 
 
 def control_above_fold(t: float, j: int, params: Floats) -> tuple[float, float]:
@@ -53,7 +53,7 @@ def solve_on_branch(wanted: float, t: float, low: float, high: float, j: int, pa
         circling = i % 3 == 2 and i > _FREE_STEPS
         if circling or not low < better < high:
             better = 0.5 * (low + high) if high < math.inf else 2.0 * t
-            if 0.0 < 4.0 * low < high < math.inf:  # a step up a steep power can lead hundreds of decades too far
+            if 0.0 < 4.0 * low < high < math.inf:  # a step up a steep power law can be decades too long
                 better = math.sqrt(low) * math.sqrt(high)
             if not low < better < high:
                 return t
@@ -65,8 +65,8 @@ def newton_step(t: float, x: float, params: Floats) -> tuple[float, float, float
     """One step of Newton's method on the last branch under fixed grips, not below its foot: the new t, the distance
     that the old one had to the state, and dt/dx.
 
-    That is the larger of the step and of the relative error of the value times the distance to the foot: on a steep
-    power law the value changes much more than t.
+    That distance is the larger of the step and of the relative error of the value times the distance to the foot: on a
+    steep power law the value changes much more than t.
     """
     value, slope = kernel.indentation_at(t, params)
     lift = params[DEPTH] if params[TENSION] > 0.0 else 0.0

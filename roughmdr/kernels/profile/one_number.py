@@ -1,6 +1,6 @@
-"""The profile of a shape that one number tells apart, besides width and rise, for vector code.
+"""The profile of a shape with one parameter besides width and rise, for vector code.
 
-Compilers make none of loads from where the rows of all asperities begin, and the number stands there. Notation of
+It reads the copy of the parameter in NUMBER: compilers do not vectorise loads from the beginning of rows. Notation of
 ``layout``.
 """
 

@@ -9,7 +9,7 @@ from roughmdr.kernels.profile import branches, elastic, equilibrium, folds, init
 from roughmdr.kernels.profile.layout import first_node
 
 OCTAVES, OCTAVES_OF_SIMILAR = 24, 40
-OCTAVES_OF_EDGES = 14  # a node costs as much as two visits
+OCTAVES_OF_EDGES = 14  # octaves of the table of both edges; a node costs as much as two visits
 _SPLIT = 6  # halvings of an octave of the initial guess where all asperities share one row
 VECTOR_CODE: set[Callable[..., Any]] = {
     equilibrium.indentation_at,
@@ -52,7 +52,7 @@ def elastic_or_jkr(similar: bool) -> dict[str, Callable[..., Any]]:
 
 
 def constants_of(shared: bool, similar: bool, octaves: int, node_size: int) -> dict[str, Any]:
-    """Return what kernels of all shapes have: how contacts are found, and the layout of rows."""
+    """Return the constants of kernels of all shapes: how contacts are found, and the layout of rows."""
     split = _SPLIT if shared else 0
     return {
         "iterative": True,

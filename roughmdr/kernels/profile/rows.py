@@ -36,7 +36,7 @@ def fill_params(material: Material, width: float, rise: float, control: float, p
 
 
 def note_shape(params: Floats) -> None:
-    """Fill in what is known of the shape."""
+    """Fill in the entries of the shape."""
     kernel.precompute(params)
     params[ROUNDINGS] = kernel.roundings(params)
     params[CORNER], params[FLAT], params[BRANCHED] = 1.0 * kernel.corner, 1.0 * kernel.flat, 1.0 * kernel.softens
@@ -49,9 +49,7 @@ def repeated(columns: Columns, i: int) -> bool:
 
 
 def prepare(material: Material, columns: Columns, start: int, stop: int, control: float, deepest: float) -> Floats:
-    """Return a row for each of the asperities from start to stop; the branches of those like the one before are not
-    sought again.
-    """
+    """Return a row for each asperity from start to stop; equal ones in succession share the search for branches."""
     rows, last = np.zeros((stop - start, 2 - kernel.first_node)), 0
     for i in range(stop - start):
         if i > 0 and kernel.repeated(columns, start + i):
@@ -68,7 +66,7 @@ def prepare(material: Material, columns: Columns, start: int, stop: int, control
 def prepare_tabled(
     material: Material, columns: Columns, start: int, stop: int, control: float, deepest: float
 ) -> Floats:
-    """Return as ``prepare`` where the params of an asperity are a row themselves."""
+    """Do as ``prepare`` where the params of an asperity are a row themselves."""
     size = columns.params.shape[1]
     rows, last = np.zeros((stop - start, size - kernel.first_node)), 0
     for i in range(stop - start):

@@ -33,7 +33,7 @@ def displacement_matrix(rings: Rings, effective_modulus: float) -> Floats:
 
 @njit
 def _add_parabola(row: Floats, radius: Floats, element: int, r: float, weight: float) -> None:
-    """Add to ``row`` what the value at r takes from the three rings of an element, times ``weight``."""
+    """Add to ``row`` the weights of an element's three rings in the value at r, times ``weight``."""
     y = (r - radius[2 * element]) / (radius[2 * element + 2] - radius[2 * element])
     row[2 * element] += weight * (1.0 - y) * (1.0 - 2.0 * y)
     row[2 * element + 1] += weight * 4.0 * y * (1.0 - y)
@@ -76,7 +76,7 @@ def _row_displacement(radius: Floats) -> Floats:
 
 @njit
 def _product(left: Floats, right: Floats) -> Floats:
-    """Return left right, each element summed in its order: libraries sum in one that depends on their threads."""
+    """Return the matrix product, each element summed in order: in libraries the order depends on the threads."""
     product = np.zeros((left.shape[0], right.shape[1]))
     for i in range(left.shape[0]):
         for k in range(left.shape[1]):

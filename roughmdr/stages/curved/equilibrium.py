@@ -35,7 +35,7 @@ class Half(NamedTuple):
 
 
 class State(NamedTuple):
-    """The rings at rest, or on their way."""
+    """The rings in equilibrium, or during a search for it."""
 
     s: Floats
     """Separation [m] of each ring."""

@@ -13,7 +13,7 @@ from roughmdr.stages.curved.rings import Rings
 
 
 class Place(NamedTuple):
-    """The rings at rest at one separation of the body."""
+    """The rings in equilibrium at one separation of the body."""
 
     h: float
     """The separation of the body's apex from the datum plane [m]."""
@@ -49,7 +49,7 @@ class Body(NamedTuple):
         return Place(h, state, self.half.law.remember(state.s, place.memory), response)
 
     def along(self, separation: Floats, place: Place | None = None) -> list[Place]:
-        """Return the rings at each separation [m] of a path that comes from infinity, or from a place."""
+        """Return the rings at each separation [m] of a path from infinity, or from a known equilibrium."""
         places: list[Place] = []
         last = self.apart() if place is None else place
         for h in each_step(separation.tolist()):
@@ -58,7 +58,7 @@ class Body(NamedTuple):
         return places
 
     def force(self, places: list[Place]) -> Floats:
-        """Return the force [N] at each place."""
+        """Return the force [N] of each equilibrium."""
         return np.array([float((self.rings.area_weights * place.state.pressure).sum()) for place in places])
 
     def totals(self, place: Place) -> dict[int, float]:
@@ -67,14 +67,14 @@ class Body(NamedTuple):
         return {row: float((self.rings.area_weights * values).sum()) for row, values in found.items()}
 
     def stiffness(self, place: Place) -> float:
-        """Return -dF/dh [N/m], of bodies, asperities and contacts that are made or lost."""
+        """Return -dF/dh [N/m] of bodies and asperities, with contacts that are made or lost."""
         return -float((self.rings.area_weights * place.state.slope * place.response).sum())
 
     def contact_radius(self, place: Place) -> float:
         """Return the effective radius of the nominal contact [m], 3 pi/4 ∫ r p dr / ∫ p dr; 0 without contact.
 
-        p is the pressure of the contacts that push, which has a meaning at pull-off too. Without adhesion the radius is
-        Greenwood and Tripp's, which under Hertz's pressure is his.
+        p is the pressure of the contacts that push, so that the radius is defined at pull-off too. Without adhesion it
+        is Greenwood and Tripp's, which under Hertz's pressure is Hertz's.
         """
         load = self.half.law.pushing(place.state.s, place.memory) * self.rings.weights
         whole = float(load.sum())

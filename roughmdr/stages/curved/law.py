@@ -20,10 +20,10 @@ from roughmdr.stages.curved.local_law import LocalLaw
 from roughmdr.stages.curved.refine import Layer, Solution, solve
 
 _MAX_ERROR = 0.1  # largest numerical error over the largest force: beyond, the law is refused
-_FEW = 10  # contacts, of whose number the standard deviation is a third
+_FEW = 10  # number of contacts with a standard deviation of a third
 _OF_LAYER = ("model_error_curve",)
-"""Variables that are those of the layer where it is pressed most."""
-_PARTS, _MAX_ROUNDS = 8, 12  # parts of the steps beside the lowest force, and how often they are divided
+"""Variables taken from the ring where the layer is pressed most."""
+_PARTS, _MAX_ROUNDS = 8, 12  # parts into which steps beside the lowest force are divided, and how often
 _FINE = 0.1  # difference of forces, over their error, at which steps are close enough
 
 
@@ -109,7 +109,7 @@ def _extremes(of_asperities: ValidityLimits, shape: Shape, radius: Floats) -> Va
 
 
 def _few(contacts: Floats) -> list[str]:
-    """Return that the contacts are too few for a law of their mean."""
+    """Return the warning that contacts are too few for a law of their mean."""
     most = float(contacts.max(initial=0.0))
     if not 0.0 < most < _FEW:
         return []
@@ -120,7 +120,7 @@ def _few(contacts: Floats) -> list[str]:
 
 
 def _remarks(error: float, asked: float) -> list[str]:
-    """Return how far the rings fall short."""
+    """Return the warning that the rings do not reach the error asked for."""
     if error <= asked:
         return []
     return [f"the force of the curved body changes by {error:.2g} of its largest with finer rings; {asked:g} was asked"]

@@ -29,9 +29,9 @@ _RTOL_TABLE, _NARROWEST = 1e-11, 1e-7  # error over the largest value on a piece
 
 
 class LocalLaw(NamedTuple):
-    """The nodes of the expected law, each asperity of which stands for so many per area.
+    """The law per area from the nodes of the expected law, with the number of asperities per area.
 
-    Without adhesion, where all depends on the separation alone, it is tabulated.
+    Without adhesion it depends on the separation alone, and is tabulated.
     """
 
     nodes: list[QuadratureNode]
@@ -40,8 +40,8 @@ class LocalLaw(NamedTuple):
     scale: float
     """The width of the heights [m], over which the pressure changes."""
     closest: float
-    """The least separation [m] that the tables are for; beyond it the pressure is taken to stay the same, which lets
-    rings come so close that one sees what tables they need."""
+    """The least separation [m] of the tables; below it the pressure is taken as constant, so that rings still find an
+    equilibrium, which shows how deep tables must go."""
     table: AdaptiveTable | None = None
     """``ROWS`` per area over the separation."""
 
@@ -95,7 +95,7 @@ class LocalLaw(NamedTuple):
         return np.asarray(np.minimum(np.maximum(memory, s - np.array(self._depths)[:, None]), s))
 
     def pressure(self, s: Floats, memory: Floats) -> tuple[Floats, Floats]:
-        """Return p [Pa] and dp/ds [Pa/m] at separations s [m], which are reached in one go after ``memory``."""
+        """Return p [Pa] and dp/ds [Pa/m] at separations s [m], reached monotonically after ``memory``."""
         within = np.maximum(s, self.closest)
         pressure, slope = self._tabulated(within) if self.table is not None else self._remembered(within, memory)
         return pressure, np.where(s < self.closest, 0.0, slope)
@@ -124,7 +124,7 @@ class LocalLaw(NamedTuple):
         return dict(zip(ROWS, found, strict=True))
 
     def pushing(self, s: Floats, lowest: Floats) -> Floats:
-        """Return the pressure [Pa] of the contacts that push, at least 0: without adhesion of all."""
+        """Return the pressure [Pa] of the contacts that push, at least 0; without adhesion these are all."""
         if not self.adhesive:
             return self.pressure(s, lowest)[0]
         unloaded = [float(node.contact.at_force(np.zeros(1))["indentation"][0]) for node in self.nodes]

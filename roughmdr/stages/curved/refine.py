@@ -1,4 +1,4 @@
-"""Rings and tables that suffice: rings so close that the force no longer changes, tables as deep as the rings come."""
+"""Refinement of rings, until the force no longer changes, and of tables, until they are as deep as the rings come."""
 
 import math
 from typing import NamedTuple
@@ -26,8 +26,8 @@ _AT_AN_END = 1e-6  # distance of a negligible kink from the axis or the last rin
 _MAX_ELEMENTS = 256  # with more of them a step takes a second
 _MAX_PASSES = 16
 _RULE_STEPS = 32  # steps of the path for which the rule over the shape parameters is chosen
-_ROWS_OF_RULE = tuple(sorted(ROWS, key=lambda row: row == STIFFNESS))  # which is not judged, and so the last
-_DEEPER, _WIDER = 2.0, 1.25  # factors by which tables reach deeper, and rings farther out, where they do not suffice
+_ROWS_OF_RULE = tuple(sorted(ROWS, key=lambda row: row == STIFFNESS))  # stiffness last: its error is not judged
+_DEEPER, _WIDER = 2.0, 1.25  # factors on the depth of tables, and on the last radius, where they do not suffice
 _MAX_TRIALS = 60
 _NO_PRESSURE = 1e-12  # pressure over the largest that counts as none
 
@@ -47,14 +47,14 @@ class Solution(NamedTuple):
     body: Body
     places: list[Place]
     error: float
-    """Change of the force by the last refinement of the rings, or the doubt about elements that this left as they were
-    where it is larger, over the largest force."""
+    """Change of the force by the last refinement of the rings or, where it is larger, the estimated error of elements
+    that were not refined, over the largest force."""
     rule_error: float
     """Error of the rule over the shape parameters, over the pressure at the closest separation of the tables."""
 
 
 def solve(layer: Layer, shape: Shape, separation: Floats, error: float) -> Solution:
-    """Return the rings under a body of this shape along a path of its apex [m], right to ``error`` if they can be.
+    """Return the rings under a body of this shape along a path of its apex [m], refined to ``error`` if possible.
 
     OutOfRange where there is no equilibrium, where the body ends within the contact, or where no float holds it.
     """
@@ -99,7 +99,7 @@ def _on_wide_rings(
 def _refined(
     law: LocalLaw, shape: Shape, effective_modulus: float, separation: Floats, last: float, error: float
 ) -> tuple[Body, list[Place], float]:
-    """Return the solution on rings up to the radius ``last`` [m], which are halved where the pressure asks for it."""
+    """Return the solution on rings up to the radius ``last`` [m], halved where the pressure needs it."""
     rings = Rings.between(_first_ends(shape, last))
     before, change, doubt_left = np.zeros(0), math.inf, 0.0
     for _ in range(_MAX_PASSES):

@@ -1,4 +1,4 @@
-"""Rings of a nominal contact: radii on which pressure is a parabola from each to the next but one."""
+"""Rings of a nominal contact: nodes of elements on which the pressure is quadratic in the radius."""
 
 from typing import NamedTuple
 
@@ -46,10 +46,10 @@ class Rings(NamedTuple):
         return Rings.between(np.sort(np.concatenate([self.ends, self.radius[1::2][chosen]])))
 
     def doubt(self, field: Floats) -> Floats:
-        """Return about how far ∫ field 2 pi r dr over each element may be off: [..., element].
+        """Return an estimate of the error of ∫ field 2 pi r dr over each element: [..., element].
 
-        It is from the jumps of the slope at the ends of the elements, which are there only because a field that is
-        quadratic on each cannot follow the true one. ``field`` is [..., ring].
+        It is from the jumps of the slope at the ends of the elements, which are errors of the quadratic interpolation.
+        ``field`` is [..., ring].
         """
         width = np.diff(self.ends)
         first, middle, last = field[..., :-1:2], field[..., 1::2], field[..., 2::2]
@@ -62,5 +62,5 @@ class Rings(NamedTuple):
 
 
 _JUMP = 1.0 / 24.0
-"""∫ of the cubic on an element of width 1 that vanishes at its ends and its middle, over half of it, about, for a jump
-of 1 of the slope."""
+"""About the integral, over half an element of width 1, of the cubic that vanishes at its ends and its middle, for a
+jump of 1 of the slope."""

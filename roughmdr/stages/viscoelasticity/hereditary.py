@@ -19,26 +19,26 @@ from roughmdr.numerics.gauss import unit_gauss
 
 _DEGREE = 8  # degree of the polynomials; even, so that the halves of a panel share its points
 _HALVINGS, _HALVINGS_BELOW = 30, 6  # halvings of the panels towards first touch, and towards the deepest point
-_REACH, _NODES = 40.0, 20  # memory lengths that are looked back, exp(-40) = 4e-18; Gauss points for these
+_REACH, _NODES = 40.0, 20  # memory lengths that are integrated, exp(-40) = 4e-18; Gauss points for these
 _BLOCK = 4096  # integrals whose points are in memory at a time
 _FINE, _COARSE = 1e-12, 1e-9  # errors aimed at, over the largest force, with few separations and with more
-_FEW, _MOST, _MOST_PER_STEP = 1024, 8192, 4  # separations
+_FEW, _MOST, _MOST_PER_STEP = 1024, 8192, 4  # numbers of separations: few, most, and most per step
 _SLOPE = 2.0 * _DEGREE  # largest slope of an interpolation error, over that error and the width of its panel
-_LEAST_WIDTH = 64.0  # roundings of a separation
+_LEAST_WIDTH = 64.0  # least width of a panel [rounding of a separation]
 
 Force = Callable[[Floats], tuple[Floats, float]]
 """Returns the elastic force [N] at separations [m], and its relative error."""
 
 
 class Fading(NamedTuple):
-    """The memory of a force: at each step it is ``long_term`` times the elastic one, and ``weights`` times J."""
+    """The memory of a force: at each step it is ``long_term`` times the elastic one plus ``weights`` times J."""
 
     lengths: Floats
     """v tau [m] of each term."""
     weights: Floats
     """[term, step]"""
     long_term: float
-    """Share of the force that is never forgotten."""
+    """Share of the force that does not relax."""
     force: Floats
     """Elastic force at each step [N]."""
 
@@ -76,8 +76,8 @@ class _Panels(NamedTuple):
 def remembered_force(force: Force, fading: Fading, at: Floats, clear: float) -> tuple[Floats, float]:
     """Return the force [N] with its memory of loading from ``clear`` down to the separations ``at`` [m], and its error.
 
-    At ``clear``, above the lowest of them, nothing touches. The error [N] is that of the elastic force, and by how much
-    halving the panels changes the largest one.
+    At ``clear``, above the lowest of them, nothing touches. The error [N] is that of the elastic force, with the change
+    of the largest force by halving the panels.
     """
     relative = 0.0
 
@@ -104,7 +104,7 @@ def remembered_force(force: Force, fading: Fading, at: Floats, clear: float) -> 
 
 
 def _graded(force: Callable[[Floats], Floats], clear: float, lowest: float) -> _Panels:
-    """Return panels from ``clear`` down to ``lowest`` [m], towards either end each half as wide as the next."""
+    """Return panels from ``clear`` down to ``lowest`` [m], halved again and again towards either end."""
     part = (clear - lowest) * 0.5 ** np.arange(1, _HALVINGS + 1)
     edges = np.concatenate([[clear], clear - part[::-1], lowest + part[1:_HALVINGS_BELOW], [lowest]])
     edges = edges[np.concatenate([[True], np.diff(np.minimum.accumulate(edges)) < 0.0])]
@@ -130,13 +130,13 @@ def _remember(panels: _Panels, fading: Fading, at: Floats) -> Floats:
 
 
 def _decays(width: Floats, length: float) -> Floats:
-    """Return widths over a memory length; no more than a float holds."""
+    """Return widths over a memory length, limited to what a float holds."""
     with np.errstate(divide="ignore", over="ignore"):
         return np.minimum(width / length, np.finfo(float).max)
 
 
 def _carried(kept: Floats, added: Floats) -> Floats:
-    """Return what is remembered at all edges: at each panel some is kept, and some added."""
+    """Return the memory at all edges: each panel keeps a share of it and adds to it."""
     steps = zip(kept.tolist(), added.tolist(), strict=True)
     return np.array(list(accumulate(steps, lambda before, step: step[0] * before + step[1], initial=0.0)))
 
@@ -171,7 +171,7 @@ def _slopes(values: Floats) -> Floats:
 
 
 def _worth_halving(panels: _Panels, off: Floats, allowed: float) -> NDArray[np.bool_]:
-    """Return which panels to halve, so that all others together put the force off [N] by no more than is allowed."""
+    """Return which panels to halve, so that all others together have an allowed error of the force [N]."""
     order = np.argsort(off)
     chosen = np.zeros(off.size, dtype=bool)
     chosen[order] = np.cumsum(off[order]) > allowed
@@ -185,9 +185,9 @@ def _roundings(panels: _Panels, relative: float) -> Floats:
 
 
 def _deviations(panels: _Panels, fading: Fading, roundings: Floats) -> Floats:
-    """Return how far each panel puts the force off [N] beyond roundings, at most.
+    """Return a bound on the error of the force [N] by each panel, beyond roundings.
 
-    By how far a polynomial without the point in the middle is off there.
+    It is the error, in the middle, of a polynomial without the point there.
     """
     signs = [(-1) ** number * comb(_DEGREE, number) for number in range(_DEGREE + 1)]
     difference = np.abs((panels.force * signs).sum(axis=1))
@@ -200,7 +200,7 @@ def _deviations(panels: _Panels, fading: Fading, roundings: Floats) -> Floats:
 
 
 def _slope_limit(decay: Floats) -> Floats:
-    """Return how much of an error of the force is remembered at most, since its slope is limited over a panel."""
+    """Return the largest share of an error of the force that is remembered, since its slope is limited over a panel."""
     with np.errstate(divide="ignore"):
         return np.minimum(1.0, _SLOPE / decay)
 

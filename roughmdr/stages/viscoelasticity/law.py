@@ -31,7 +31,7 @@ class Viscoelasticity(NamedTuple):
     motion: FlatMotion
 
 
-@np.errstate(over="ignore", under="ignore")  # a time over one that is far shorter: nothing is remembered
+@np.errstate(over="ignore", under="ignore")  # a time over a much shorter one: nothing is remembered
 def viscoelastic_law(
     elastic: ElasticLaw,
     separation: Floats,

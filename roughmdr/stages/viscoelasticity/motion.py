@@ -1,4 +1,4 @@
-"""The motion of the flat in time, and of which time of loading the contacts are."""
+"""The motion of the flat in time, and the time of loading with the present contacts."""
 
 import sys
 from typing import NamedTuple
@@ -10,7 +10,7 @@ from roughmdr.stages.viscoelasticity.relaxation import Relaxation
 
 
 class Contacts(NamedTuple):
-    """Contacts of a viscoelastic body: those of loading at an earlier time."""
+    """Contacts of a viscoelastic body: they equal those of loading at an earlier time."""
 
     separation: Floats
     """Separation of the flat at that time [m]."""
@@ -58,7 +58,7 @@ class FlatMotion(NamedTuple):
         return Contacts(np.concatenate([separation[: turn + 1], left]), ages)
 
     def _since_turn(self, separation: Floats, lowest: float) -> tuple[Floats, Floats]:
-        """Return of the steps after the turning point how long the flat has dwelt there, and has risen since [s]."""
+        """Return the time [s] of the dwell at the turning point, and since then, for each step after it."""
         still = int(np.count_nonzero(separation == lowest))
         dwelt = self.dwell * np.minimum(np.arange(1, separation.size + 1) / max(still, 1), 1.0)
         return dwelt, (separation - lowest) / self.retraction_speed

@@ -37,9 +37,9 @@ class Relaxation(NamedTuple):
         return total
 
     def duration(self, start: Floats, integral: Floats, longest: float) -> Floats:
-        """Return after which duration [s] from each start on [s] phi has an integral [s]; ``longest`` [s] at most.
+        """Return the duration [s] from each start [s] on over which phi has an integral [s]; at most ``longest`` [s].
 
-        The integral is concave: Newton's method comes from below, and never beyond the duration.
+        The integral is concave, so that Newton's method from below never goes beyond the duration.
         """
         duration = np.zeros_like(integral)
         while True:
