@@ -1,4 +1,4 @@
-"""The accessor ``ds.roughmdr``: what to do with a result, beside what xarray does."""
+"""The accessor ``ds.roughmdr``: analysis of results, beside the methods of xarray."""
 
 from typing import TYPE_CHECKING, Any
 

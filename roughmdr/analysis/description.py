@@ -22,7 +22,7 @@ _MANY_AXES = 3
 
 
 def describe(dataset: "xr.Dataset") -> Iterator[tuple[str, str]]:
-    """Yield the lines of a result or an ensemble; of another dataset that it is neither. No curve is loaded."""
+    """Yield the lines on a result or an ensemble; one line for any other dataset. No curve is loaded."""
     if is_ensemble(dataset):
         yield from _describe_ensemble(dataset)
     elif is_result(dataset):
@@ -62,7 +62,7 @@ def _axes(result: ResultView) -> list[tuple[str, str]]:
 
 
 def _range(array: "xr.DataArray") -> str:
-    """Return the range of a coordinate with its unit, a path from where it begins, or its names."""
+    """Return the range of a coordinate with its unit (a path from its begin), or its names."""
     values = np.atleast_1d(array.to_numpy()).ravel()
     if values.dtype.kind not in "iuf":
         return ", ".join(printable(str(name)) for name in dict.fromkeys(values))

@@ -1,4 +1,4 @@
-"""The energy of a loop: the work of loading, that regained on unloading, and what is lost."""
+"""The energies of a loop: the work of loading, that regained on unloading, and the loss."""
 
 from typing import TYPE_CHECKING
 

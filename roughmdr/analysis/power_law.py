@@ -26,17 +26,17 @@ _COMMENT = (
 
 
 class _Sums(NamedTuple):
-    """The points of each realisation in logarithms: what a straight line through them needs, [..., realization]."""
+    """Sums over the points of each realisation, in logarithms, for a straight line through them: [..., realization]."""
 
     points: Floats
     x: Floats
-    """Mean."""
+    """Mean of x."""
     y: Floats
     slope: Floats
     spread: Floats
     """Sum of the squares of x - mean."""
     residual: Floats
-    """Sum of the squares of what the line leaves."""
+    """Sum of the squares of the residuals."""
 
 
 def fit_power_law(dataset: "xr.Dataset", y: str, x: str, branch: str, between: Between | None) -> "xr.Dataset":
@@ -96,7 +96,7 @@ def _ends(between: Between, units: str) -> tuple[float, float]:
 
 
 def _chosen(result: ResultView, branch: str) -> NDArray[np.int64]:
-    """Return the steps on a branch, without those that hold the one before."""
+    """Return the steps on a branch, without those that repeat the one before."""
     wanted = Branch(result, branch).wanted
     values = result.path.reshape(-1, wanted.size)
     held = np.append(False, (np.diff(values) == 0.0).all(axis=0) & wanted[:-1])
@@ -119,7 +119,7 @@ def _sums(x: Floats, y: Floats, *, chosen: NDArray[np.int64], low: float, high: 
 
 
 def _fit(*sums: Floats) -> tuple[Floats, ...]:
-    """Return the power law over realisations [..., realization], of which those with a slope count."""
+    """Return the power law over realisations [..., realization]; those without a slope do not count."""
     each = _Sums(*sums)
     known = np.isfinite(each.slope)
     count = np.where(known, each.points, 0.0)

@@ -18,7 +18,7 @@ _NAME = "roughmdr"
 def register() -> None:
     """Give every Dataset the attribute ``roughmdr``: now if xarray is loaded, else as soon as it is."""
     hook = _WhenImported()
-    sys.meta_path.insert(0, hook)  # before the look whether it is loaded: another thread may import it meanwhile
+    sys.meta_path.insert(0, hook)  # before the check whether it is loaded: another thread may import it meanwhile
     if "xarray" in sys.modules:
         hook.done()
 
@@ -58,7 +58,7 @@ class _WhenImported(MetaPathFinder):
 
 
 def _analysis(dataset: "xr.Dataset") -> "Analysis":
-    """Return the analysis of a dataset: what ``ds.roughmdr`` is."""
+    """Return ``ds.roughmdr``, the analysis of a dataset."""
     from roughmdr.analysis.accessor import Analysis
 
     return Analysis(dataset)

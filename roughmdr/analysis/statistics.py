@@ -81,12 +81,12 @@ def statistics(dataset: "xr.Dataset") -> "xr.Dataset":
 
 
 def _is_found(dataset: "xr.Dataset") -> bool:
-    """Return whether a dataset holds values that were found on the curves of realisations."""
+    """Return whether a dataset holds values that were interpolated on the curves of realisations."""
     return "realization" in dataset.dims and any(str(name).endswith(_ERROR) for name in dataset.data_vars)
 
 
 def _of_found(dataset: "xr.Dataset") -> "xr.Dataset":
-    """Return the statistics of values that were found on curves."""
+    """Return the statistics of values that were interpolated on curves."""
     import xarray as xr
 
     found: dict[str, xr.DataArray] = {}
@@ -136,7 +136,7 @@ def _article(name: str) -> str:
 
 
 def _moments(values: Floats, counted: NDArray[np.bool_]) -> tuple[Floats, ...]:
-    """Return the statistics of values [..., realization], of which some count in each cell."""
+    """Return the statistics of those values [..., realization] that are counted in each cell."""
     shape = values.shape[:-1]
     cells = np.broadcast_to(counted, values.shape)
     if cells.all():
@@ -155,7 +155,7 @@ def _four(values: Floats) -> tuple[Floats, ...]:
 
 
 def _has_variance(dataset: "xr.Dataset") -> "xr.DataArray | None":
-    """Return where the stiffness has a finite variance; None where it has one everywhere.
+    """Return the steps at which the stiffness has a finite variance; None for all.
 
     It has none where adhesive contacts may be at their detachment, unless they hang on something that gives way.
     """

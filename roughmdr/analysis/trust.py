@@ -1,4 +1,4 @@
-"""How far the force of each cell of a result can be trusted."""
+"""The trust in the force of each cell of a result."""
 
 from typing import TYPE_CHECKING
 

@@ -20,7 +20,7 @@ workers_option = click.option(
 
 
 def pairs(option: str, texts: Sequence[str]) -> dict[str, object]:
-    """Read KEY=VALUE of different keys."""
+    """Read several KEY=VALUE, each key once."""
     found: dict[str, object] = {}
     for text in texts:
         key, value = _pair(option, text)

@@ -1,7 +1,7 @@
 """Messages and exit statuses of the command line.
 
-Text that may come from a file is escaped, so that the terminal does not act on it. With --json all that a command has
-to say, its errors and warnings included, is one document on standard output (``documents``).
+Text that may come from a file is escaped, so that the terminal does not act on it. With --json all output of a command,
+its errors and warnings included, is one document on standard output (``documents``).
 """
 
 import errno
@@ -23,7 +23,7 @@ _WRONG_INPUT, _INTERRUPTED = 2, 130
 
 
 _JSON = f"{__name__}.json"
-"""Key of the notes of a command with --json, in what its contexts share."""
+"""Key of the notes of a command with --json, in the dictionary that its contexts share."""
 
 
 class _OutputError(RoughmdrError):
@@ -31,10 +31,10 @@ class _OutputError(RoughmdrError):
 
 
 class Command(click.Command):
-    """A command that tells if its help cannot be printed."""
+    """A command that reports an error if its help cannot be printed."""
 
     def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
-        """Read the arguments, after noting whether all is to be told as JSON, mistakes in them included."""
+        """Read the arguments, after noting whether all output, mistakes in them included, is to be JSON."""
         if "--json" in args and any("--json" in parameter.opts for parameter in self.params):
             ctx.meta[_JSON] = {"command": self.name or "", "warnings": []}
         return super().parse_args(ctx, args)
@@ -104,7 +104,7 @@ def _print_failure(ctx: click.Context, error: BaseException, status: int) -> Non
 
 
 def print_document(ctx: click.Context, exit_status: int = 0, **told: Any) -> None:
-    """Print the document of a command with --json: what was ``told``, and its warnings until now."""
+    """Print the document of a command with --json: the entries ``told``, and its warnings until now."""
     from roughmdr.report.documents import document, to_json
 
     notes = ctx.find_root().meta[_JSON]

@@ -18,7 +18,7 @@ from roughmdr.numerics.arguments import Floats
 
 _RESIDUAL = 1e-6
 """The largest gap in contact, or overlap outside it, over the deepest overlap: about the error of the force."""
-_MAX_ITERATIONS = 2000  # next to full contact; elsewhere some 50 to 100
+_MAX_ITERATIONS = 2000  # most iterations, next to full contact; usual are 50 to 100
 _DIFFERENCE, STIFFNESS_ERROR = 0.01, 0.01
 """Step of the separation, each way, over the deepest overlap. Cells at an edge touch one by one, so that the stiffness
 is accurate to 1 %."""
@@ -32,9 +32,9 @@ class Patches(NamedTuple):
 
     contacts: int
     area: float
-    """In the square of the unit of the sides."""
+    """Areas, in the square of the unit of the sides."""
     radius_sum: float
-    """In the unit of the sides, of discs of these areas."""
+    """Sum of the radii of discs of these areas, in the unit of the sides."""
 
 
 class BoundaryElements:
@@ -54,12 +54,12 @@ class BoundaryElements:
         self._compliance = _of_waves(self._shape, cell) if periodic else fft.rfft2(_of_rectangles(self._shape, cell))
         self._cell_stiffness = 1.0 / float(fft.irfft2(self._compliance, s=self._shape)[0, 0])
         self.pressure = np.zeros_like(height)
-        """[E*], at the last separation."""
+        """Pressure [E*] at the last separation."""
         self.work = 0.0
-        """Iterations so far, times the points of the grid that each displaces."""
+        """Number of iterations so far times points of the grid."""
 
     def displacement(self) -> Floats:
-        """Return that of the surface, into the half-space."""
+        """Return the displacement of the surface, into the half-space."""
         return self._displaced(self.pressure)
 
     def _displaced(self, pressure: Floats) -> Floats:
@@ -90,7 +90,7 @@ class BoundaryElements:
         return math.nan
 
     def _starts(self, overlap: Floats) -> Iterator[Floats]:
-        """Yield the last pressures, and such as the overlap, each to the best scale."""
+        """Yield the last pressures, and pressures proportional to the overlap, both with the best factor."""
         for pressure in (self.pressure, overlap.clip(0.0)):
             work = _dot(pressure, np.where(pressure > 0.0, overlap, 0.0))
             if work > 0.0:
@@ -109,7 +109,7 @@ class BoundaryElements:
             square = _dot(rest, rest)
             direction = rest + (square / before * np.where(loaded, direction, 0.0) if before > 0.0 else 0.0)
             curvature = _dot(direction, self._displaced(direction))
-            flat = not curvature > 0.0  # the loaded cells are at rest, and others overlap
+            flat = not curvature > 0.0  # the loaded cells are in equilibrium, but others overlap
             step = self._cell_stiffness if flat else _dot(rest, direction) / curvature
             pressure = np.maximum(pressure - step * direction, 0.0)
             hit = (pressure == 0.0) & (gap < 0.0)
@@ -136,7 +136,7 @@ class BoundaryElements:
         labels, count = _connected(loaded, across=self.periodic)
         cells = np.bincount(labels.ravel(), minlength=count + 1).astype(np.float64)
         edges = np.zeros(count + 1)
-        around = np.pad(loaded, 1, mode="wrap" if self.periodic else "edge")  # where a map ends its contacts do not
+        around = np.pad(loaded, 1, mode="wrap" if self.periodic else "edge")  # contacts continue where a map ends
         for beside in (around[:-2, 1:-1], around[2:, 1:-1], around[1:-1, :-2], around[1:-1, 2:]):
             edges += np.bincount(labels[loaded & ~beside], minlength=count + 1)
         area = (cells - _EDGE_SHARE * edges)[1:] * self.cell_area

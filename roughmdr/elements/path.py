@@ -12,13 +12,13 @@ from roughmdr.numerics.arguments import Floats
 from roughmdr.numerics.underway import each_step
 
 _OF_COARSER = 0.5
-"""Error of the force on a grid over what changes on every other point of it: of order 1.6 in the cells. On maps the
-order was 2 to 3, but a single change may be small by chance."""
+"""Error of the force on a grid over the change to every other point of it: that is order 1.6 in the cell size. On maps
+the order was 2 to 3, but a single change may be small by chance."""
 _CELL_ERROR = 0.12
-"""Largest error of the force of a paraboloid anywhere on a grid, over the square of cell over contact radius; that of
-many is so much smaller as the root of their number is large."""
+"""Largest error of the force of a paraboloid anywhere on a grid, over the square of cell over contact radius; for many
+it is divided by the root of their number."""
 _HERTZ = 4.0 / 3.0  # force of a paraboloid over E* times contact radius times depth (Hertz)
-_DEEPER = 2.0  # so much farther below the lowest flat a map reaches, where the half-space rises to its rim
+_DEEPER = 2.0  # factor on the depth of the map below the lowest flat, where the half-space rises to the cut
 
 
 class GridPath(NamedTuple):
@@ -36,9 +36,9 @@ def solve_on_grid(
 ) -> GridPath:
     """Return the totals at separations [m] on a grid with ``shape``; ``stiffness`` only where it is asked for.
 
-    Contacts are the connected patches under pressure. The error is that of the grid: by what every other point of it
-    changes there or closer, and at least what a cell is off for contacts of the mean radius. Without contact on the
-    grid it is the force of summits that stand between its points.
+    Contacts are the connected patches under pressure. The error is that of the grid: from the change to every other
+    point of it, there or closer, and at least that of a cell for contacts of the mean radius. Without contact on the
+    grid it is the force of summits between its points.
     """
     length = float(surface.sides[0])
     highest = float(surface.tops.max(initial=-math.inf))
@@ -65,7 +65,7 @@ def solve_on_grid(
 def _along(
     grid: BoundaryElements, coarser: BoundaryElements, summits: Floats, downwards: list[float], stiffness: bool
 ) -> list[Step]:
-    """Return the totals in units of the side and E*, with the error by what a coarser grid finds."""
+    """Return the totals in units of the side and E*, with the error by comparison with a coarser grid."""
     steps, changes = list[Step](), list[float]()
     for h in each_step(downwards):
         force, coarse = grid.press(h), coarser.press(h)
@@ -84,13 +84,13 @@ def _along(
 
 
 def _cell_error(grid: BoundaryElements, summits: Floats, h: float, force: float, patches: Patches) -> float:
-    """Return the error of the force by the places of the contacts between the points of the grid."""
+    """Return the error of the force by the positions of the contacts relative to the points of the grid."""
     cell = math.sqrt(grid.cell_area)
     if force > 0.0:
         of_one = _CELL_ERROR * (cell * patches.contacts / patches.radius_sum) ** 2
         return force * min(of_one / math.sqrt(patches.contacts), 1.0)
     missed = summits[summits > h] - h
-    return _HERTZ * cell * math.fsum(missed.tolist())  # of contacts smaller than a cell
+    return _HERTZ * cell * math.fsum(missed.tolist())  # force of contacts smaller than a cell
 
 
 def _surface_below(grid: BoundaryElements, floor: float, downwards: list[float], steps: list[Step]) -> bool:

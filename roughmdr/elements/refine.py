@@ -1,4 +1,4 @@
-"""The law of a surface by boundary elements on a grid as fine as an error asks for."""
+"""The law of a surface by boundary elements on a grid that is fine enough for an error."""
 
 import math
 
@@ -9,7 +9,7 @@ from roughmdr.elements.surface import Surface, grid_shape
 from roughmdr.numerics.arguments import Floats
 
 LARGEST_GRID = 1024
-"""Points along the side of a square: some 10 s a step."""
+"""Most points along the side of a square: a step takes some 10 s."""
 LIGHT = 0.01
 """Least force, over the largest of the path, that a relative error is taken of: below, errors are relative to this."""
 _PER_SUMMIT, _FIRST_ERROR = 9.0, 0.02
@@ -32,9 +32,9 @@ def solve_to_error(
 ) -> GridPath:
     """Return the totals at separations [m], on a grid by which the force is off by at most ``error`` [1].
 
-    Where the error was largest, and at the lowest separation, finer grids are tried before the whole path is solved
-    again. Where these tell that ``LARGEST_GRID`` does not reach the error, or are out of ``BUDGET`` before they tell
-    that it does, the path is solved on as fine a grid as the budget allows.
+    Finer grids are tried at the step with the largest error and at the lowest separation before the whole path is
+    solved again. If they show that ``LARGEST_GRID`` misses the error, or exhaust ``BUDGET`` before they show the
+    opposite, the path is solved on the finest grid that the budget allows.
     """
 
     def on(points: float, separation: Floats, *, stiffness: bool) -> GridPath:
@@ -66,7 +66,7 @@ def solve_to_error(
 
 
 def _may_reach(off: float, points: float, error: float) -> bool:
-    """Return whether the largest grid may reach an error, off by so much on a grid of so many points a side."""
+    """Return whether the largest grid may reach an error, given the error ``off`` with so many points a side."""
     return not math.isfinite(off) or off * (points / LARGEST_GRID) ** _BEST_ORDER <= error
 
 

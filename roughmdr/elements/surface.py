@@ -33,7 +33,7 @@ class Surface(NamedTuple):
     on_grid: Callable[[tuple[int, int], float], Floats]
     """Return heights [m] on a grid with this shape; -inf where there is nothing, or nothing above a floor [m]."""
     has_floor: bool
-    """Whether what lies below the floor is left out."""
+    """Whether heights below the floor are left out."""
 
 
 def grid_shape(sides: Floats, points: float) -> tuple[int, int]:

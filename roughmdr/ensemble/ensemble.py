@@ -70,14 +70,14 @@ class Ensemble:
 
     @property
     def origin(self) -> Origin:
-        """Where the asperities come from, on which it depends how far the model of them holds."""
+        """The origin of the asperities, on which the error of the model depends."""
         if self.attrs.get("asperity_model") == "hills":
             return "hills"
         return "summits" if self.attrs.get("of_surface") else "asperities"
 
     @property
     def goes_on(self) -> bool:
-        """Whether the surface goes on beyond the patch, however few asperities are on it (``Source.goes_on``)."""
+        """Whether the surface continues beyond the patch, however few asperities are on it (``Source.goes_on``)."""
         return bool(self.attrs.get("goes_on", 0))
 
     @property
@@ -99,20 +99,20 @@ class Ensemble:
 
     @property
     def area_share(self) -> float:
-        """The area of contacts over that of circles as stiff: below 1 where they are long [1]."""
+        """Area of contacts over that of circles of the same stiffness [1]: below 1 for long ones."""
         return float(self.attrs.get("area_share", 1.0))
 
     @cached_property
     def spread(self) -> float:
         """Standard deviation of the heights [m]; 0 where all are equal."""
-        with np.errstate(all="ignore"):  # where no float holds their squares, JKR is not taken for right
+        with np.errstate(all="ignore"):  # where no float holds their squares, JKR is not trusted
             return float(np.std(self.height - self.height[0])) if self.height.size else 0.0
 
     @cached_property
     def columns(self) -> Columns:
         """Width [m], rise [m] and params [1] of each asperity; of a shared profile one row of params."""
         if self.shared_profile is None:
-            with np.errstate(all="ignore"):  # what no float can hold is refused where contacts are looked for
+            with np.errstate(all="ignore"):  # numbers that no float can hold are refused with the contacts
                 return Columns(*SHAPES[self.shape].nondimensionalise(self.parameters))
         width, rise, params = self.shared_profile.nondimensional()
         return Columns(np.full_like(self.height, width), np.full_like(self.height, rise), np.asarray(params)[None])
@@ -126,7 +126,7 @@ class Ensemble:
         return ValidityLimits.of(radius, self._slopes(radius), SHAPES[self.shape].ends(self.parameters))
 
     def relative_loads(self, radius: Floats) -> Floats:
-        """Return about the forces of contacts with these radii [m], 0 for none, in some unit."""
+        """Return estimates of the forces of contacts with these radii [m], 0 for none, up to a common factor."""
         loads = relative_loads(radius, self._slopes(radius))
         return loads if loads.any() else radius  # flat punches have flanks without slopes
 
@@ -200,9 +200,8 @@ def _nominal_area(attrs: dict[str, Any], sides: dict[str, float]) -> float | Non
 
 
 def _of_map(attrs: dict[str, Any]) -> dict[str, float | int | str]:
-    """Return whether the asperities are summits of a surface, whether it goes on, the uncertainty of their radii, how
-    far they keep apart, and what is known of hills, as far as attributes have them; SceneError if these are not what
-    they should be.
+    """Return the attributes of summits and hills that are there: whether the surface continues, uncertainty of radii,
+    least distance, errors of hills; SceneError where one is not allowed.
     """
     model = attrs.get("asperity_model", "hills")
     if model != "hills":

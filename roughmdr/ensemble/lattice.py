@@ -1,4 +1,4 @@
-"""Square and hexagonal lattices that fill a patch which repeats, without vacancies: its sides are multiples of a site.
+"""Square and hexagonal lattices that fill a periodic patch without vacancies: its sides are multiples of a site.
 
 So the patch of a hexagonal lattice is never a square: rows are sqrt(3)/2 of the pitch apart, every second one is
 shifted by half of it, and their number is even.
@@ -26,7 +26,7 @@ class Lattice(NamedTuple):
     """A lattice on its patch."""
 
     rows: int
-    """Along y."""
+    """Number of rows, along y."""
     columns: int
     """Sites of a row, along x."""
     pitch: float
@@ -69,13 +69,13 @@ def with_sites_counted(table: Any) -> Any:
     if not isinstance(table, dict) or table.get("pitch") is None:
         return table
     pitch, kind = table["pitch"], table.get("placement")
-    if kind not in LATTICES or table.get("vacancies"):  # which ``check_pitch`` tells, after misspelt keys
+    if kind not in LATTICES or table.get("vacancies"):  # refused by ``check_pitch``, after misspelt keys
         return table
     if given := [key for key in ("count", "density") if table.get(key) is not None]:
         raise EntryError("pitch", pitch, f"does not go with {given[0]}: the sites on the patch are counted")
     try:
         length, patch = (Quantity("m", above=0.0)(table.get(key)) for key in ("pitch", "patch"))
-    except RoughmdrError:  # which their fields tell
+    except RoughmdrError:  # refused by the validators of these fields
         return table
     if length > patch:
         raise EntryError("pitch", pitch, f"must be at most the side of the patch, {format_quantity(patch, 'm')}")

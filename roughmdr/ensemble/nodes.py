@@ -38,7 +38,7 @@ class Heights(NamedTuple):
     edges: tuple[float, ...]
     """y, ascending; a negligible fraction lies below the first, ``tail`` is above the last."""
     scale: float
-    """[m]; the interquartile range, or a third of the distance from the median to score 3 if that is larger."""
+    """Interquartile range [m], or a third of the distance from the median to score 3 if that is larger."""
     tail: UpperTail
     origin: float  # [m]
 
@@ -49,12 +49,12 @@ class Heights(NamedTuple):
 
     @property
     def low(self) -> float:
-        """[m]; a negligible fraction of the summits is lower."""
+        """Height [m] below which a negligible fraction of the summits lies."""
         return self.origin + self.edges[0]
 
     @property
     def high(self) -> float:
-        """[m]; a negligible fraction of the summits is higher."""
+        """Height [m] above which a negligible fraction of the summits lies."""
         return self.origin + self.edges[-1]
 
 
@@ -136,7 +136,7 @@ def hermite(x: Floats, count: int) -> Floats:
 
 
 class Nodes(NamedTuple):
-    """A few asperities with weights, fractions that add up to 1, which stand for all."""
+    """A few asperities that represent all, with weights: fractions that add up to 1."""
 
     weights: Floats  # [node]
     parameters: dict[str, Floats]  # [node]

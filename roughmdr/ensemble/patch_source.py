@@ -55,7 +55,7 @@ class PatchSource(Source):
         return self
 
     def check_lattice(self) -> None:
-        """Raise EntryError where the asperities fill no lattice though they are placed on one."""
+        """Raise EntryError where placement is on a lattice and the asperities do not fill one."""
         if self.placement in LATTICES and not self.vacancies and self.lattice is None:
             count = round(self.expected_count)
             others = " or ".join(map(str, nearest_that_fit(self.placement, count)))
@@ -64,7 +64,7 @@ class PatchSource(Source):
             raise EntryError("placement", self.placement, f"{message}{vacancies}")
 
     def at_most(self, count: int) -> int:
-        """Return how many asperities are ``count`` at most, or all; on a lattice, as many as fill one."""
+        """Return the number of asperities, or ``count`` if that is less; on a lattice, a number that fills one."""
         whole = round(self.expected_count)
         return at_most(self.placement, count) if self.lattice is not None and count < whole else min(count, whole)
 

@@ -1,4 +1,4 @@
-"""The interface of all sources of asperities: what a scene, a plan and a run ask of them."""
+"""The interface of all sources of asperities, which scenes, plans and runs use."""
 
 import math
 from collections.abc import Callable, Iterator
@@ -68,12 +68,12 @@ class Source(Section):
 
     @property
     def repeats(self) -> bool:
-        """Whether the surface is one period of one without end."""
+        """Whether the surface is one period of an infinite one."""
         return True
 
     @property
     def goes_on(self) -> bool:
-        """Whether the asperities are a sample of a surface that goes on beyond the patch, and not all that there are.
+        """Whether the asperities are a sample of a surface that continues beyond the patch, not all that exist.
 
         They are a sample where they have a density, or fill a lattice.
         """
@@ -96,7 +96,7 @@ class Source(Section):
 
     @property
     def nominal_area(self) -> float | None:
-        """[m2]; None where it is unknown."""
+        """Nominal area [m2]; None where it is unknown."""
         raise NotImplementedError
 
     @property
@@ -122,14 +122,14 @@ class Source(Section):
         raise NotImplementedError
 
     def extremes(self, chance: float) -> Ensemble:
-        """Return asperities as high as an asperity is with this chance, with shape parameters that cover all but tails
-        of this chance; all asperities themselves where nothing is drawn.
+        """Return asperities of the height that one exceeds with this chance, with shape parameters that cover all but
+        tails of this chance; all asperities themselves where nothing is drawn.
         """
         raise NotImplementedError
 
     @property
     def unbounded(self) -> "Source":
-        """The source as a part of a surface that goes on beyond the patch: with a density in place of a count."""
+        """The source with a density in place of a count: a part of a surface that continues beyond the patch."""
         if self.given_count is None or self.nominal_area is None:
             return self
         return self.model_copy(update={"count": None, "density": self.given_count / self.nominal_area})
@@ -151,7 +151,7 @@ class Source(Section):
 
     @property
     def all_alike(self) -> bool:
-        """Whether they are a given number of equal asperities, of which nothing is drawn."""
+        """Whether they are a given number of equal asperities, without random draws."""
         return False
 
     @property
@@ -186,7 +186,7 @@ class Source(Section):
 
     @property
     def heavy_tailed_streams(self) -> tuple[int, ...]:
-        """The streams of quantities with rare values many times larger, or smaller, than the usual ones."""
+        """The streams of quantities with rare values that are far from the usual ones by factors."""
         return ()
 
     def ensembles_at_levels(self, stream: int, levels: Floats, count: int) -> Iterator[Ensemble]:

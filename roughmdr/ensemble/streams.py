@@ -14,7 +14,7 @@ from roughmdr.numerics.arguments import Floats
 HEIGHT, POSITION, PARAMETER = 0, 1, 2  # PARAMETER is the first shape parameter; those of further parameters follow
 COUNT, POPULATION = 100, 101  # the number of asperities, and the population that each belongs to
 WAVES = 200  # the amplitudes of the waves of a map, two numbers each
-_SCRAMBLE = 1000  # scrambling of stratified numbers
+_SCRAMBLE = 1000  # stream for the scrambling of stratified numbers
 
 _BITS = 52
 SMALLEST_UNIFORM = 0.5 * 2.0**-_BITS
@@ -49,7 +49,7 @@ def make_streams(seed: int, realization: int, stratified: tuple[int, ...] = ()) 
 
         scramble = np.random.Generator(_philox(seed, realization, _SCRAMBLE))
         sequence = Sobol(len(stratified), bits=_BITS, rng=scramble)
-        sobol = sequence.random_base2((count - 1).bit_length())[:count]  # scipy warns of any count but powers of 2
+        sobol = sequence.random_base2((count - 1).bit_length())[:count]  # scipy warns unless the count is a power of 2
         return np.ascontiguousarray(sobol.T) + SMALLEST_UNIFORM
 
     def draw(stream: int, count: int) -> Floats:

@@ -1,4 +1,4 @@
-"""Compiled code on disk, in folders that can move: found by what was compiled, not by where its sources lie.
+"""Compiled code on disk, in folders that can move: it is found by the content of its sources, not by their path.
 
 A folder is named after the sources and numba, so that a change begins a new one; a file in it after the function, its
 types, the processor and Python. numba's own index of the forms of a function is not used: two processes that write it
@@ -34,7 +34,7 @@ USED: dict[str, Path | None] = {}
 
 
 class Folders(NamedTuple):
-    """Where compiled code is looked for, in order, and where new code is put, None where nothing can be written."""
+    """Folders in which compiled code is sought, in order, and the folder for new code, None if none can be written."""
 
     read: tuple[Path, ...]
     written: Path | None
@@ -97,7 +97,7 @@ def compiles() -> bool:
 
 
 def keep_on_disk(function: Any) -> None:
-    """Let a function compiled by numba be looked for on disk before it is compiled, and put there after."""
+    """Let numba look for a function on disk before it compiles it, and keep it there afterwards."""
     if folders().read:
         function._cache = _Cache(function.py_func)
 
@@ -109,7 +109,7 @@ def _content(file: str) -> str:
 
 
 class _Locator(InTreeCacheLocator):
-    """Tells numba the content of the source file of a function, and nothing of where it lies."""
+    """Gives numba the content of the source file of a function, without its path."""
 
     def get_source_stamp(self) -> str:
         return _content(self._py_file)
@@ -148,7 +148,7 @@ class _Files:
         return f"{self._name}-{digest[:24]}.nbc"
 
     def load(self, key: Any) -> Any:
-        """Return what is kept of a function for its types, None where it is in no folder."""
+        """Return the kept code of a function for its types, None where it is in no folder."""
         file = self._file(key)
         for folder in folders().read:
             with suppress(OSError, EOFError, pickle.UnpicklingError):

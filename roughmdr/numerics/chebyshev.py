@@ -34,7 +34,7 @@ def find_piece(upper: Floats, value: float) -> int:
 
 @njit
 def evaluate_series(coefficients: Floats, u: Floats, out: Floats, before: Floats, earlier: Floats) -> None:
-    """Evaluate a series at all u by C. W. Clenshaw's recurrence; ``before`` and ``earlier`` are for its own use."""
+    """Evaluate a series at all u by C. W. Clenshaw's recurrence; ``before`` and ``earlier`` are working arrays."""
     for i in range(u.size):
         before[i] = 0.0
         earlier[i] = 0.0

@@ -1,4 +1,4 @@
-"""Watch numba compile: a word at the first function, and no garbage collection meanwhile."""
+"""Hooks into numba's compiler: a call at the first function, and no garbage collection meanwhile."""
 
 import gc
 from collections.abc import Callable, Iterator
@@ -13,7 +13,7 @@ _register: Callable[[str, Listener], None] = register
 class _Rest(Listener):
     """Lets Python's garbage collector rest while numba compiles, which it does for one thread at a time.
 
-    What numba makes it mostly keeps until the end; to search it takes a tenth of the time.
+    Most objects that numba makes stay until the end; a search among them takes a tenth of the time.
     """
 
     _depth, _resume = 0, False

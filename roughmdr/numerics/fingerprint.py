@@ -18,9 +18,9 @@ COMPILED = (
     "numerics",
     "shapes",
 )
-"""All that jitted functions are made of."""
+"""Parts of the package that contain jitted functions, or code that they use."""
 NUMBERS = (*COMPILED, "asperity", "batch", "elements", "ensemble", "scene", "schema", "spectrum.py", "stages")
-"""All that decides the numbers of a realisation, given its scene."""
+"""Parts of the package that decide the numbers of a realisation, given its scene."""
 
 
 @cache

@@ -30,9 +30,9 @@ def unit_gauss(count: int) -> tuple[Floats, Floats]:
 
 @cache
 def last_coefficients(count: int) -> Floats:
-    """Return the two rows that make values at the nodes into the last two coefficients of their Legendre series.
+    """Return the two rows that turn values at the nodes into the last two coefficients of their Legendre series.
 
-    They show how far the rule may be off.
+    Their size shows the error of the rule.
     """
     nodes, weights = gauss(count)
     basis = np.polynomial.legendre.Legendre.basis

@@ -20,13 +20,13 @@ from roughmdr.numerics.rebind import rebuilt
 let_collector_rest()
 _config: Any = numba.config
 UNCOMPILED = bool(_config.DISABLE_JIT)
-"""Whether functions stay as they are, by NUMBA_DISABLE_JIT."""
+"""Whether functions are not compiled, by NUMBA_DISABLE_JIT."""
 _Made = TypeVar("_Made")
 _Function = TypeVar("_Function", bound=Callable[..., Any])
 
 
 def once(make: Callable[..., _Made]) -> Callable[..., _Made]:
-    """Keep what a function has made for its arguments, so that it makes each once in a process, whichever threads ask.
+    """Keep the results of a function by its arguments, so that each is made once in a process, whichever threads ask.
 
     Threads wait on the lock under which numba compiles. With a lock of its own, a thread that compiles and another that
     makes something could wait for each other; and Python's parser of syntax trees fails where two threads are in it.
@@ -61,7 +61,7 @@ def njit(function: _Function, *, inline: bool = False, small: bool = False) -> _
 
 
 def _bare_form(whole: Any, decorator: Callable[..., Any]) -> Callable[[], Any]:
-    """Return what makes the form of a function for calls from compiled code.
+    """Return a function that makes the form for calls from compiled code.
 
     It lacks the wrapper for calls from Python, which would take a tenth of the time to compile and which most kernels
     never need.
@@ -70,7 +70,7 @@ def _bare_form(whole: Any, decorator: Callable[..., Any]) -> Callable[[], Any]:
 
 
 def _renamed(function: FunctionType, suffix: str) -> FunctionType:
-    """Return a copy of a function under a name by which the cache on disk tells the two apart."""
+    """Return a copy of a function under another name, since the cache on disk distinguishes functions by name."""
     copy = FunctionType(
         function.__code__, function.__globals__, function.__name__, function.__defaults__, function.__closure__
     )
@@ -88,9 +88,9 @@ def _kept_on_disk(decorator: Callable[..., Any], function: Callable[..., Any]) -
 
 @once
 def compiled(function: Callable[..., Any], *, small: bool = False) -> Callable[..., Any]:
-    """Compile a plain function, ``small`` or not, and the plain functions of roughmdr that it calls, which are."""
+    """Compile a plain function, ``small`` or not, and the plain functions of roughmdr that it calls, as small ones."""
     copy = rebuilt(function, {}, partial(compiled, small=True))
-    copy.__qualname__ += "_small" if small else ""  # so that the cache on disk tells them apart
+    copy.__qualname__ += "_small" if small else ""  # the cache on disk distinguishes them by name
     return njit(copy, small=small)
 
 
@@ -122,7 +122,7 @@ def specialise(
     """Return a compiled copy of ``loop`` in which the global name ``kernel`` stands for the given module of kernels.
 
     numba cannot cache a loop that gets its kernels as arguments or from a closure; a copy with globals of its own
-    can be. The name of the module tells the copies of one loop apart: numba finds them in its cache by it. Numbers of
+    can be. The name of the module distinguishes the copies of one loop in numba's cache. Numbers of
     the module are put in as literals, so that branches on them that are not taken are not compiled either.
     """
     plain = cast(FunctionType, loop)
@@ -138,13 +138,13 @@ _ARGUMENTS: dict[tuple[Any, bytes], Any] = {}
 
 
 def as_argument(function: Callable[..., Any], *arguments: object) -> Callable[..., Any]:
-    """Return a compiled function for compiled code to take as an argument; ``arguments`` are examples of its own.
+    """Return a compiled function that compiled code takes as an argument; ``arguments`` are examples of its own ones.
 
     Code that takes it is compiled once for all functions of the same types, and does not hold their machine code.
     """
     if _config.DISABLE_JIT:
         return function
-    key = function, numba_parts.types_of(arguments)  # their types, sooner found than by ``typeof``
+    key = function, numba_parts.types_of(arguments)  # types_of is faster than numba's ``typeof``
     with numba_parts.lock:
         if key not in _ARGUMENTS:
             plain = cast(Any, function).py_func

@@ -1,9 +1,9 @@
-"""Parts of numba that are not its public face, but those of its cache and events: a change of numba can break them.
+"""Private parts of numba, which a new version can break; those of its cache and events stand with their use.
 
 Functions of one type behind one name: compiled code calls them by addresses, to which its last argument leads, and is
 compiled once for all of them. A row of numbers, or the first of several, holds the address of a table of addresses. A
-call takes some nanoseconds and keeps a loop from vector code: what is called often is a loop itself. An address is one
-of this process: rows must not leave it.
+call takes some nanoseconds and keeps a loop from vector code: what is called often is a loop itself. An address
+is valid in this process alone, and so are rows.
 """
 
 import inspect
@@ -25,7 +25,7 @@ _if_unlikely: Callable[..., Any] = cgutils.if_unlikely
 
 
 def types_of(arguments: tuple[object, ...]) -> bytes:
-    """Return what tells the types of arguments apart, sooner found than by ``numba.typeof``."""
+    """Return a key for the types of arguments, faster than by ``numba.typeof``."""
     return compute_fingerprint(cast(Any, arguments))
 
 
@@ -46,7 +46,7 @@ class Addressed:
     def __init__(self, compiled: Any) -> None:
         self._numba_type_ = types.FunctionType(compiled.signature)
         self._address = compiled.library.get_pointer_to_function(compiled.fndesc.llvm_cfunc_wrapper_name)
-        self._compiled = compiled  # kept for the code
+        self._compiled = compiled  # keeps the code in memory
 
     def __wrapper_address__(self) -> int:
         return int(self._address)
@@ -63,7 +63,7 @@ def address_of(function: Callable[..., Any], signature: str) -> int:
 
 
 def through_row(place: int, at: int, signature: str) -> Callable[..., Any]:
-    """Return a function that calls the one at a ``place`` of the table whose address stands in a row, ``at`` an index
+    """Return a function that calls the one with index ``place`` in the table whose address is in a row, ``at`` an index
     from its end.
 
     ``signature`` is that of all such functions, as numba writes types; the last argument is the row, or the rows.
@@ -97,13 +97,13 @@ class Table:
     """The addresses of functions by name, each compiled when it is first asked for."""
 
     def __init__(self, functions: Callable[[str], Callable[..., Any]], signatures: Mapping[str, str]) -> None:
-        """Take what returns a function by its name, and the types of all in the order of their places."""
+        """Take a function that returns functions by name, and the types of all in the order of the table."""
         self._functions, self._signatures = functions, dict(signatures)
-        self._kept = dict[str, Callable[..., Any]]()  # for their code
+        self._kept = dict[str, Callable[..., Any]]()  # keeps their code in memory
         self._addresses = np.zeros(len(signatures), dtype=np.int64)
 
     def address(self, names: Container[str]) -> float:
-        """Return where the table begins, once these functions are in it."""
+        """Return the address of the table, once these functions are in it."""
         with lock:
             for place, (name, signature) in enumerate(self._signatures.items()):
                 if name in names and name not in self._kept:

@@ -15,11 +15,11 @@ _ORDER = 16
 # less than that change. The halvings suffice for powers x^p at an end down to p = -0.6.
 _RTOL = 2e-14
 _MAX_HALVINGS = 120
-# A jump that no node sees lies between an end and the node next to it: it is looked for at the relative distance
-# _NEXT_TO_END from the ends, and followed down to _RTOL_JUMP of the whole.
+# A jump that no node sees lies between an end and the node next to it: it is sought at the relative distance
+# _NEXT_TO_END from the ends, and located to _RTOL_JUMP of the whole.
 _NEXT_TO_END = 1e-9
 _RTOL_JUMP = 1e-11
-# More panels than these at work on an integral mean that its integrand is noisy: the limit rises to the noise.
+# With more unfinished panels than these the integrand of an integral is noisy: the limit rises to the noise.
 _NOISY_PANELS = 64
 
 
@@ -89,7 +89,7 @@ def integrate(integrand: Callable[[Rows, Floats], Floats], edges: Floats) -> Flo
             integrate_panels(rows, middle, high),
         )
         size = np.maximum(size, np.bincount(rows, np.abs(left) + np.abs(right), count))
-        # What is not finite is left to the caller.
+        # Values that are not finite are left to the caller.
         converged = ~(np.abs(left + right - whole) > rtol * size[rows])
         converged &= ~(left_jump + right_jump > np.maximum(rtol, _RTOL_JUMP) * size[rows])
         converged |= (middle <= low) | (middle >= high)

@@ -1,4 +1,4 @@
-"""How far long computations are: each notes its steps under its thread, and a display in another thread reads them."""
+"""Progress of long computations: each notes its steps under its thread, and a display in another thread reads them."""
 
 import threading
 from collections.abc import Callable, Iterator, Sequence
@@ -18,7 +18,7 @@ class _Computation(NamedTuple):
 
 
 _underway: list[tuple[int, _Computation]] = []
-"""By the thread of each, in the order in which they began."""
+"""Computations by thread, in the order in which they began."""
 
 
 @contextmanager
@@ -49,6 +49,6 @@ def filling(values: Floats) -> Iterator[None]:
 
 
 def steps_done() -> list[tuple[int, int]]:
-    """Return how many steps of each computation in this process are done, and how many it has."""
+    """Return the number of finished steps of each computation in this process, and of all its steps."""
     innermost = dict(list(_underway))
     return [(computation.done(), computation.steps) for computation in innermost.values()]

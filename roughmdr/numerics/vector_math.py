@@ -99,7 +99,7 @@ def tanh(t: float) -> float:
 
 
 def binade_cell(y: float, split: int) -> tuple[int, float]:
-    """Return the cell in which a normal y > 0 lies, and where in it, from 0 to 1.
+    """Return the cell in which a normal y > 0 lies, and its position there, from 0 to 1.
 
     Each interval from 2^k to 2^(k + 1) has 2^split equal cells; cell 0 begins at 1.
     """

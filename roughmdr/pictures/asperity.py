@@ -98,7 +98,7 @@ def draw_contact(contact: OneContact, force: float, title: str, notes: list[str]
     load.set(xlim=(-half, half), xlabel=length.label)
     set_title(figure, title, [*notes, *_numbers(contact, force)])
     figure.legend(loc="outside lower center", ncols=3, frameon=False, fontsize=8)
-    figure.draw_without_rendering()  # lays the panels out
+    figure.draw_without_rendering()  # this lays out the panels
     names = "profile and surface of the half-space", "MDR profile g(x) on its row of springs"
     for ax, height, name in zip((profile, row), heights, names, strict=True):
         ax.set_title(f"{name}; {_exaggeration(ax, height, length)}", fontsize=9, loc="left")
@@ -120,7 +120,7 @@ def _numbers(contact: OneContact, force: float) -> tuple[str, str]:
 
 
 def _exaggeration(ax: "Axes", height: Scale, length: Scale) -> str:
-    """Return how much taller than to scale a panel is drawn."""
+    """Return the factor by which heights of a panel are exaggerated."""
     box, (left, right), (low, high) = ax.get_window_extent(), ax.get_xlim(), ax.get_ylim()
     ratio = box.height / ((high - low) * height.size) / (box.width / ((right - left) * length.size))
     return f"heights drawn {ratio:.2g} times as large as widths"
@@ -161,7 +161,7 @@ def _draw_profile(ax: "Axes", contact: OneContact, length: Scale) -> Scale:
 
 
 def _top(r: Floats, body: Floats, contact: OneContact, lifted: float) -> float:
-    """Return the height up to which a body is drawn [m]: that at 1.6 times the reach of its pressure, and above all."""
+    """Return the height up to which a body is drawn [m]: at 1.6 times the radius of its pressure, and above all."""
     inside = np.isfinite(body) & (r <= 1.6 * contact.state.reach)
     depth = max(abs(contact.state.indentation), abs(contact.stretch), lifted, float(np.ptp(body[inside])) / 3.0)
     return max(float(body[inside].max()), lifted + 0.4 * depth, 0.3 * depth)

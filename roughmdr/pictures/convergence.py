@@ -1,4 +1,4 @@
-"""How a mean over realisations converges: its standard error against their number, beside the other errors."""
+"""Convergence of a mean over realisations: its standard error against their number, with the other errors."""
 
 import math
 from collections.abc import Iterator
@@ -18,11 +18,11 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 _POINTS = 160  # points of a curve
-_MAX_LINES = 6  # cells drawn each; more are a band
-_FEW = 40  # points of a curve below which each is marked
+_MAX_LINES = 6  # most cells that are drawn as lines; more are a band
+_FEW = 40  # number of points of a curve below which each is marked
 _WIDE = 1000  # realisations from which on only powers of ten fit under an axis
 _DEEPEST = 0.03  # lowest level drawn, over the least error: a lower one is only named
-_NEEDED = 0.01, 0.001  # relative standard errors of which the note says what they take
+_NEEDED = 0.01, 0.001  # relative standard errors for which the note gives the number of realisations
 
 
 class Convergence(NamedTuple):
@@ -151,7 +151,7 @@ def _draw_panel(ax: "Axes", result: ResultView, found: list[Convergence]) -> flo
 
 
 def _levels(result: ResultView) -> Iterator[tuple[float, dict[str, Any], str]]:
-    """Yield the other errors of the force that are known and above 0, largest of all cells, with how they are drawn."""
+    """Yield the other errors of the force that are known and above 0, largest of all cells, with their line styles."""
     kinds: tuple[tuple[str, dict[str, Any], str], ...] = (
         ("numerical_error", {"color": "#56b4e9", "ls": "-."}, "numerical error of the force"),
         ("model_error", {"color": "#cc79a7", "ls": "-"}, "error of the force by the model, at most"),
@@ -165,7 +165,7 @@ def _levels(result: ResultView) -> Iterator[tuple[float, dict[str, Any], str]]:
 
 
 def _needed_in_words(found: list[Convergence]) -> str:
-    """Return how many realisations the errors of ``_NEEDED`` take, least and most of all cells."""
+    """Return in words the realisations that the errors of ``_NEEDED`` take, least and most over the cells."""
     scatters = [each.scatter for each in found]
     parts = []
     for error in _NEEDED:

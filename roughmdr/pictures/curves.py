@@ -65,7 +65,7 @@ class Curve(NamedTuple):
     """A quantity in one cell of a result, over one loading or unloading."""
 
     cell: int
-    leg: int  # counts the loadings and unloadings of the path, from 0
+    leg: int  # number of the loading or unloading of the path, from 0
     branch: str
     x: Floats
     middle: Floats  # mean over the realisations; of a stiffness where contacts detach the median
@@ -105,7 +105,7 @@ def curves_of(result: ResultView, quantity: Quantity, x: Quantity) -> Iterator[C
             some = of_cell[:, steps]
             middle, off = mean[cell][steps], 2.0 * error[cell][steps]
             low, high = middle - off, middle + off
-            if name == "stiffness" and sticky and branch == "unloading":  # its variance is infinite
+            if name == "stiffness" and sticky and branch == "unloading":  # the variance of the stiffness is infinite
                 middle, low, high = _medians(middle, some)
                 some = some[:0]
             yield Curve(
@@ -131,7 +131,7 @@ def _legs(result: ResultView) -> list[Leg]:
 
 
 def _medians(mean: Floats, runs: Floats) -> tuple[Floats, Floats, Floats]:
-    """Return the median of the realisations with a band of two thirds of them; of few with those of some steps."""
+    """Return the median of the realisations with a band of two thirds of them; few are joined over some steps."""
     values = runs if len(runs) else mean[None]
     width = 1 if len(values) >= _FEW else min(_ROBUST, 1 + 2 * (mean.size // 8))
     padded = np.pad(values, ((0, 0), (width // 2, width // 2)), mode="edge")

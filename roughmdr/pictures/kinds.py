@@ -1,4 +1,4 @@
-"""The kinds of pictures: what each is drawn from, and which options it takes."""
+"""The kinds of pictures, with the data that each needs and the options that it takes."""
 
 from collections.abc import Callable
 from typing import NamedTuple
@@ -42,7 +42,7 @@ def draw_request(source: Drawable, request: Request) -> Picture:
 
 
 def _usual(source: Drawable, request: Request) -> str:
-    """Return the kind of picture that the options mean, or else the usual one: of many cells the sweep, or the law."""
+    """Return the kind of picture that the options imply, or else the usual one: a sweep for many cells, or the law."""
     if source.content != "result":
         return "map" if source.content == "ensemble" else "fit"
     curves = set(LAW_VARIABLES)
@@ -117,7 +117,7 @@ def _asperity(source: Drawable, request: Request) -> Picture:
 
 
 def _place(result: ResultView, request: Request) -> tuple[tuple[int, ...], int, int | None]:
-    """Return the cell, the realisation and the step that are asked for; None for the closest approach."""
+    """Return the cell, the realisation and the step that are asked for; a step of None is the closest approach."""
     cell, realization = cell_of(result, request.select), request.realization or 0
     step = request.step
     if isinstance(step, str) and step != _PULL_OFF:

@@ -19,12 +19,12 @@ from roughmdr.storage.labelled import Array
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-_HANDLE, _LETTER = 0.6, 0.066  # inches, in a legend
+_HANDLE, _LETTER = 0.6, 0.066  # widths in a legend [inches]
 _PULL_OFF = {"force": "pull_off_force", "pressure": "pull_off_pressure"}
 
 
 class LawOptions(NamedTuple):
-    """How a law is drawn."""
+    """Options of the picture of a law."""
 
     x: str | None = None
     per_area: bool = False
@@ -88,7 +88,7 @@ def draw_law(
 
 
 def _realizations(result: ResultView) -> str:
-    """Describe how many realisations a picture is of, and what it shows of them."""
+    """Describe the number of realisations in a picture, and how they are shown."""
     if result.estimator == "expected":
         return "expected law"
     most = fewest = result.realizations

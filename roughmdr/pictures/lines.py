@@ -21,7 +21,7 @@ class OverlayLine(NamedTuple):
 
 
 class Overlay(NamedTuple):
-    """Lines to draw, and remarks on whether they are drawn, and if not why."""
+    """Lines to draw, and remarks on those that are drawn or, with the reason, are not."""
 
     lines: list[OverlayLine]
     remarks: list[str]

@@ -19,12 +19,12 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 DIVERGING = "PuOr_r"
-"""Colours for tension and compression, which the colour-blind tell apart."""
+"""Colours for tension and compression, distinct for the colour-blind."""
 _WIDTH = 7.4  # width of the figure [inches]
 _SIDE = 5.4  # longer side of the patch as it is drawn [inches]
 _BAR = 0.7  # height of a colour bar below [inches]
 _MIN_RADIUS = 0.6  # least radius of a contact as it is drawn [points]
-_OTHERS = 5000  # asperities drawn that are not in contact, the highest
+_OTHERS = 5000  # most asperities out of contact that are drawn, the highest
 _PIXELS = 1200  # most pixels of a height map along a side
 
 
@@ -73,7 +73,7 @@ def draw_map(
     ensemble, contacts = now.ensemble, now.contacts
     _check_placed(ensemble)
     on = np.flatnonzero(contacts.active)
-    on = on[np.argsort(-contacts.radius[on], kind="stable")]  # small ones are not hidden
+    on = on[np.argsort(-contacts.radius[on], kind="stable")]  # large ones first, so that small ones are not hidden
     others = np.flatnonzero(~contacts.active)
     frame = Frame.of(ensemble, 2.0 * float(contacts.radius.max()))
     surface = now.scene.asperities.height_map(now.scene.seed, realization)
@@ -189,13 +189,13 @@ def _draw_contacts(figure: "Figure", ax: "Axes", discs: Floats, force: Floats, l
     )
     ax.add_collection(contacts, autolim=False)
     bar = figure.colorbar(contacts, ax=ax, label=scale.label)
-    if tense:  # of which the two halves have scales of their own
+    if tense:  # compression and tension have scales of their own
         halves = [MaxNLocator(4).tick_values(*ends) for ends in ((norm.vmin, 0.0), (0.0, norm.vmax))]
         bar.set_ticks([tick for tick in np.unique(np.concatenate(halves)) if norm.vmin <= tick <= norm.vmax])
 
 
 def _notes(now: Snapshot, frame: Frame, others: int, *, needed: bool) -> list[str]:
-    """Return the numbers of a map in words, and what of it is not to scale, or not ``needed`` for the result."""
+    """Return the numbers of a map in words, with the parts that are not to scale, or not ``needed`` for the result."""
     contacts, ensemble = now.contacts, now.ensemble
     on = contacts.active
     count, total = int(np.count_nonzero(on)), float(contacts.force.sum())

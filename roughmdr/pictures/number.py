@@ -26,7 +26,7 @@ class Number(NamedTuple):
     error: Floats
     """Standard error of the mean; NaN where there is none."""
     where: str
-    """Where along the path it is taken; empty of what is no curve."""
+    """Position on the path, in words; empty for numbers that are not taken from a curve."""
 
 
 def number_of(result: ResultView, request: Request) -> Number:
@@ -53,7 +53,7 @@ def number_of(result: ResultView, request: Request) -> Number:
 
 
 def _usual(result: ResultView, request: Request) -> str:
-    """Return the variable that a sweep is usually about: the pull-off force or, the tangential one first, the force."""
+    """Return the usual variable of a sweep: the pull-off force, or else the tangential force, or else the force."""
     if not request.at and result.holds(_PULL_OFF) and np.isfinite(result.mean(_PULL_OFF)[0]).any():
         return _PULL_OFF
     available = result.curves

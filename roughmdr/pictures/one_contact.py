@@ -13,9 +13,9 @@ from roughmdr.kernels.adhesion import Adhesion
 from roughmdr.numerics.arguments import Floats
 from roughmdr.shapes import Shape
 
-WIDTH = 2.2  # half of what is drawn, over the radius within which there is a pressure
+WIDTH = 2.2  # half width of the drawing, over the radius of the pressure
 _POINTS = 600  # points of a curve
-_SPRINGS = 13  # within that radius
+_SPRINGS = 13  # springs within that radius
 _INSIDE = 1.0 - 1e-12  # largest radius that is drawn, over the limit of a profile
 
 
@@ -23,7 +23,7 @@ class Springs(NamedTuple):
     """The row of springs on both sides of the axis."""
 
     x: Floats
-    """Where they stand [m]."""
+    """Positions [m]."""
     end: Floats
     """Height of their ends above the undeformed surface [m]; 0 of those that are free."""
 
@@ -32,11 +32,11 @@ class Pressure(NamedTuple):
     """The pressure from the axis outwards."""
 
     r: Floats
-    """[m]; never where it is infinite."""
+    """Distance from the axis [m], without radii where the pressure is infinite."""
     p: Floats
     """[Pa]."""
     infinite: dict[float, str]
-    """The radii [m] where it is infinite, and what lies there."""
+    """The radii [m] where it is infinite, with the reason."""
 
 
 class OneContact(NamedTuple):
@@ -72,7 +72,7 @@ class OneContact(NamedTuple):
 
     @property
     def stretch(self) -> float:
-        """How far the edge of the contact is lifted above the undeformed surface [m]: dl under JKR; < 0 if pressed."""
+        """Height [m] of the edge of the contact above the undeformed surface: dl under JKR; < 0 if pressed."""
         return -self.state.stretch
 
     def body(self, r: Floats) -> Floats:
@@ -108,7 +108,7 @@ class OneContact(NamedTuple):
         return Springs(np.append(-x[::-1], x), np.append(end[::-1], end))
 
     def pressure(self) -> Pressure:
-        """Return the pressure, on points that crowd towards the edge of the contact."""
+        """Return the pressure, on points that are denser towards the edge of the contact."""
         a, reach = self.state.radius, self.state.reach
         r = a * np.sin(0.5 * math.pi * (np.arange(_POINTS) + 0.5) / _POINTS)
         zone = np.linspace(a, reach, 50)[1:-1] if reach > a else np.empty(0)

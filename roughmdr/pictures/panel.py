@@ -13,15 +13,15 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 MAX_NAMED = 8
-"""Cells that a legend names, and whose errors are drawn; more are told apart by a colour bar."""
+"""Most cells that a legend names, and whose errors are drawn; more are distinguished by a colour bar."""
 MAX_RUNS, _SOME_RUNS = 64, 16
-"""Realisations that are drawn as lines; of more, the range of most of them is a band, and some are lines."""
+"""Most realisations that are all drawn as lines; more are drawn as a band of most of them with some lines."""
 _MOST = (0.05, 0.95)
-_FOR_RANGE = 256  # realisations from which the range of an axis follows
+_FOR_RANGE = 256  # most realisations that determine the range of an axis
 _DECADES = 4.0  # maximum number of decades of a logarithmic axis
 _EXPONENTIAL = 1e3  # ratio of the largest to the least positive value from which an axis is logarithmic
 _INSETS = ((0.42, 0.5, 0.55, 0.46), (0.12, 0.12, 0.36, 0.24))
-"""Places of an inset, in shares of a panel: left, bottom, width and height."""
+"""Possible positions of an inset, in shares of a panel: left, bottom, width and height."""
 _SIGNED = ("force", "pressure", "stiffness", "tangential_force")
 
 Style = dict[str, Any]
@@ -38,7 +38,7 @@ class Mark(NamedTuple):
 
 
 class Panel(NamedTuple):
-    """All that one panel shows, in SI, and how."""
+    """The content of one panel, in SI, and its style."""
 
     quantity: Quantity
     x: Quantity

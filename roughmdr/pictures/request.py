@@ -1,4 +1,4 @@
-"""A picture that is asked for: of which data, and how it is to be drawn."""
+"""A picture that is asked for: its data and its options."""
 
 import os
 from collections.abc import Mapping
@@ -41,7 +41,7 @@ class Drawable(NamedTuple):
 
 
 class Picture(NamedTuple):
-    """A figure, and remarks on the curves over it: which they are, and whether they are drawn, and if not why."""
+    """A figure, and remarks on the curves over it: those drawn and, with the reason, those that are not."""
 
     figure: "Figure"
     remarks: list[tuple[str, str]]
@@ -49,7 +49,7 @@ class Picture(NamedTuple):
 
 @dataclass(frozen=True)
 class Request:
-    """How a picture is to be drawn; ``None``, empty or False where that is left to the kind of picture."""
+    """Options of a picture; ``None``, empty or False where the kind of picture decides."""
 
     kind: str | None = None
     variables: tuple[str, ...] = ()

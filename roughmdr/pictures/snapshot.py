@@ -18,7 +18,7 @@ from roughmdr.schema.wording import short_repr
 from roughmdr.variables import DONE, SEPARATION
 
 _RTOL = 1e-6  # difference of the forces of contacts and curve, over the largest of the curve, that is allowed
-_FAR = 1e3  # depths of the path above it: there no contact is left
+_FAR = 1e3  # height above the path, over its depth, at which no contact is left
 
 
 class Snapshot(NamedTuple):
@@ -113,7 +113,7 @@ def _separations(result: ResultView, cell: tuple[int, ...], realization: int) ->
 
 
 def _closest(result: ResultView, run: tuple[int, ...], path: Floats) -> int:
-    """Return the first step at which the flat is closest, of those at which the result has a force where it tells."""
+    """Return the first step at which the flat is closest, among those with a force if the result has forces."""
     force = result.variables.get("force")
     known = np.isfinite(path)
     if force is not None and (known & np.isfinite(force.values[run])).any():
@@ -122,7 +122,7 @@ def _closest(result: ResultView, run: tuple[int, ...], path: Floats) -> int:
 
 
 def _on_grid(result: ResultView, run: tuple[int, ...]) -> bool:
-    """Return whether a run was computed by boundary elements; of statistics that of any of its cell."""
+    """Return whether a run was computed by boundary elements; with statistics alone, whether any of its cell was."""
     if "grid_points" not in result.variables:
         return False
     grid = result.variables["grid_points"].values

@@ -20,23 +20,23 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 BRANCH_COLOURS = {"loading": "#0072b2", "unloading": "#d55e00"}
-"""Colours that the colour-blind tell apart: M. Okabe, K. Ito, Color universal design (2008)."""
+"""Colours that are distinct for the colour-blind: M. Okabe, K. Ito, Color universal design (2008)."""
 THEORY_COLOURS = ("#009e73", "#e69f00", "#cc79a7", "#56b4e9", "#8c564b")
 BRANCH_LINESTYLES = {"loading": "-", "unloading": "--"}
 COLOUR_MAP = "viridis"
 _LETTERS_PER_INCH = 12.0  # letters of a title per inch
 _DPI = 160
-_REASON_LETTERS = 200  # most letters of what matplotlib says, in a message
-_SALT = "roughmdr"  # so that an SVG of one figure is always the same
+_REASON_LETTERS = 200  # most letters of a reason by matplotlib in a message
+_SALT = "roughmdr"  # salt of identifiers, so that an SVG of one figure is always the same
 
 
 class Scale(NamedTuple):
-    """The unit of an axis: its size in SI, and what the axis shows in which unit."""
+    """The unit of an axis with its size in SI, and the name of the quantity."""
 
     size: float
     name: str
     unit: str = ""
-    """With prefix; empty for plain numbers and names."""
+    """Unit with prefix; empty for plain numbers and names."""
 
     @classmethod
     def of(cls, values: ArrayLike, name: str, unit: str) -> "Scale":
@@ -69,7 +69,7 @@ def _spelt(unit: str) -> str:
 
 
 def colours(count: int) -> list[str]:
-    """Return that many colours, from dark to light, that the colour-blind tell apart, and all from the ground."""
+    """Return that many colours, from dark to light, distinct for the colour-blind and from the background."""
     from matplotlib import colormaps, rcParams
     from matplotlib.colors import to_hex, to_rgb
 
@@ -81,7 +81,7 @@ def colours(count: int) -> list[str]:
 def set_title(figure: "Figure", title: str, notes: Sequence[str] = ()) -> None:
     """Write a title, and smaller notes under it, above a figure, in lines that are not wider than the figure."""
     letters = int(_LETTERS_PER_INCH * figure.get_figwidth())
-    figure.set_label("\n".join(map(escape_controls, notes)))  # for those who write the title elsewhere
+    figure.set_label("\n".join(map(escape_controls, notes)))  # for users who write the title elsewhere
     lines = textwrap.wrap(escape_controls(title), int(0.9 * letters)) or [""]
     lines += [line for note in notes for line in textwrap.wrap(escape_controls(note), letters)]
     figure.suptitle("\n".join(lines), fontsize=10, parse_math=False)
@@ -105,7 +105,7 @@ def styled(style: str | None) -> Iterator[None]:
             yield
     except RoughmdrError:
         raise
-    except Exception as error:  # a style can ask for what this machine does not have, and set what cannot be drawn
+    except Exception as error:  # a style can need things that this machine lacks, and set things that cannot be drawn
         reason = str(error).partition("\n")[0][:_REASON_LETTERS]
         raise StoreError(f"style {shown}: matplotlib cannot draw with it here: {reason}") from None
 
@@ -137,7 +137,7 @@ def _check_style_file(style: str) -> None:
 
 
 def save(figure: "Figure", path: Path) -> None:
-    """Write a picture in the format that its name says, with the same bytes for the same figure.
+    """Write a picture in the format of its name's ending, with the same bytes for the same figure.
 
     StoreError if it cannot be written.
     """

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 _MAX_KEYS, _FLAT = 3, 2
 _MAX_PANELS = 12
 _MAX_TICKS = 7
-_MAX_WRITTEN = 36  # cells of a colour map in which the numbers are written
+_MAX_WRITTEN = 36  # most cells of a colour map with written numbers
 _DECADES = 100.0  # ratio of numbers from which their axis is logarithmic
 _EVEN = 1e-6  # difference of steps that count as equal on a logarithmic axis, over a step
 _LUMINANCE = (0.2126, 0.7152, 0.0722)  # weights of red, green and blue (ITU-R BT.709)
@@ -141,7 +141,7 @@ def _swept_keys(result: ResultView) -> list[str]:
 
 
 def _swept_together(result: ResultView, shown: str) -> str:
-    """Name the keys that change along with the one that is shown."""
+    """Name the keys that are swept together with the one that is shown."""
     others = [name for name in _swept_keys(result) if name != shown] if "cell" in result.sweep else []
     labels = [str(result.coordinates[name].attrs.get("long_name", name)).removeprefix("swept ") for name in others]
     return f"{', '.join(labels)} {'changes' if len(labels) == 1 else 'change'} along with it" if labels else ""
@@ -169,7 +169,7 @@ def _spans_decades(numbers: Floats) -> bool:
 
 
 def _model_note(result: ResultView, number: Number) -> str:
-    """Return how far the model may be off, where the number is a force: of a pull-off, that of pull-offs."""
+    """Return a note on the model error, where the number is a force: for a pull-off that of pull-offs."""
     if number.unit not in ("N", "Pa"):
         return ""
     if "pull_off" in number.name and (own := pull_off_error_of(result)):

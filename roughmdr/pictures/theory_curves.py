@@ -1,4 +1,4 @@
-"""Theory curves beside a result: to which scenes each applies, and its values along the path of the flat."""
+"""Theory curves beside a result: the scenes to which each applies, and its values along the path of the flat."""
 
 import math
 from collections.abc import Callable
@@ -33,10 +33,10 @@ class TheoryCurve(NamedTuple):
     """Return a variable at each step of a cell, NaN where the theory gives none; RoughmdrError if it does not apply."""
     variables: tuple[Variable, ...] = get_args(Variable)
     note: str = ""  # how the theory differs from the scene
-    on_maps: Callable[[MapWaves], str] = describe_moments  # what it takes from a map
+    on_maps: Callable[[MapWaves], str] = describe_moments  # the numbers of a map that it needs, in words
 
     def remark(self, cell: Cell) -> str:
-        """Return how the theory differs from the scene of a cell, and what it takes from a map; empty if nothing."""
+        """Return how the theory differs from the scene of a cell, and the numbers that it needs of a map; or empty."""
         section = cell.scene.asperities
         taken = self.on_maps(section.waves) if isinstance(section, SurfaceAsperities) else ""
         return "; ".join(filter(None, (self.note, taken)))

@@ -1,4 +1,4 @@
-"""Assembles the result of a batch: its variables, coordinates and the attributes that tell where it comes from."""
+"""Assembles the result of a batch: its variables, coordinates and the attributes on its origin."""
 
 import math
 from collections.abc import Sequence
@@ -37,7 +37,7 @@ _REFERENCES = (
     "M. Hess, On the reduction method of dimensionality: the exact mapping of axisymmetric contact problems "
     "with and without adhesion (2012)"
 )
-_MOSTLY_DRAWN = 0.9  # fraction of the error that the draws alone show, above which rare asperities are not warned of
+_MOSTLY_DRAWN = 0.9  # share of the error by draws alone, above which there is no warning of rare asperities
 
 
 def assemble(

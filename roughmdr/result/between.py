@@ -1,4 +1,4 @@
-"""How far a curve may be off the straight line between two of its steps, jumps of contacts included.
+"""The deviation of a curve from the straight line between two of its steps, with jumps of contacts.
 
 A smooth curve is off by the squared step times y''/8. Jumps between the steps show in third differences: a jump changes
 the rise of its step by its size, against the rises of the steps beside. Of many small jumps at random, each rise
@@ -12,22 +12,22 @@ import numpy as np
 from roughmdr.numerics.arguments import Floats
 
 REACH = 4
-"""Number of steps on each side of the two next to a place that tell how far a curve may be off there."""
+"""Number of steps beside an interval, on each side, from which the deviation within it is estimated."""
 CONFIDENCE = 0.97
-"""Part of random laws, at least, for which errors held against paths of eight times as many steps."""
+"""Least share of random laws whose errors were right, against paths of eight times as many steps."""
 ANYWHERE = 1.7
 """Largest departure between two steps, over the standard deviation by third differences: 2.1 s of a bridge."""
 AT_A_PLACE = 1.2
-"""Departure at a given place between two steps, likewise; fewer and unequal jumps scatter more than a bridge."""
+"""Departure at a given position between two steps, over the same; few, unequal jumps scatter more than a bridge."""
 
 _BEND = 0.275
-"""Over half the second derivative times the squared step: 1/4, and a tenth of it as that derivative changes."""
+"""Departure over half the second derivative times the squared step: 1/4, and a tenth more since it changes."""
 
 
 def off_line(path: Floats, curve: Floats, *, spreads: float) -> tuple[Floats, Floats]:
-    """Return how far a curve may be off the line between the middle two of 2 REACH + 2 steps, as it bends and by jumps.
+    """Return the deviation of a curve from the line between the middle two of 2 REACH + 2 steps, by bend and by jumps.
 
-    Path and curve are [..., step], NaN where there is no such step; both parts are [...], to be added, and NaN of fewer
+    Path and curve are [..., step], NaN where there is no such step; both parts are [...], to be added, NaN for fewer
     than four steps. ``spreads`` is ANYWHERE or AT_A_PLACE.
     """
     step = np.diff(path, axis=-1)

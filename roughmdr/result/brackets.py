@@ -8,7 +8,7 @@ from roughmdr.result.between import AT_A_PLACE, REACH, off_line
 from roughmdr.result.curves import Branch
 
 LOWER, UPPER, FRACTION = range(3)
-"""Parts of a bracket: its two steps, and how far from the first to the second the value is."""
+"""Parts of a bracket: its two steps, and the position of the value from the first (0) to the second (1)."""
 
 
 def find_brackets(curve: Floats, values: Floats, *, branch: Branch) -> Floats:
@@ -50,11 +50,11 @@ def _first(y: Floats, value: float, before: Ints, usable: NDArray[np.bool_]) -> 
 def interpolate(
     curve: Floats, reached: Floats, path: Floats, brackets: Floats, *, branch: Branch, in_jumps: bool
 ) -> tuple[Floats, Floats]:
-    """Return curves at brackets [..., value, part] of curves that are ``reached``, and how far they may be off.
+    """Return curves at brackets [..., value, part] of curves that are ``reached``, with their errors.
 
     Curves and the ``path``, the controlled quantity, are [..., step]; the returned arrays [..., value]. A bracket gives
-    a line, the curve over what is reached. The error is how far the curve less that line may be off between the steps;
-    of a curve that changes ``in_jumps`` only, and where too few steps are known, the difference to the farther step.
+    a line, the curve over the reached one. The error is the deviation of the curve from that line between the steps;
+    for a curve that changes ``in_jumps`` only, and where too few steps are known, the difference to the farther step.
     """
     known = ~np.isnan(brackets[..., FRACTION])
     lower, upper = (np.where(known, brackets[..., part], 0.0).astype(np.int64) for part in (LOWER, UPPER))

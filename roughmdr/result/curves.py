@@ -90,7 +90,7 @@ def separation_of(result: ResultView) -> "xr.DataArray":
 
 
 def alone(array: "xr.DataArray") -> "xr.DataArray":
-    """Return an array with no coordinates over the steps, which may bear the name of a new dimension."""
+    """Return an array without coordinates over the steps, as one may have the name of a new dimension."""
     over_steps = [name for name, each in array.coords.items() if "step" in each.dims]
     return array.drop_vars(over_steps)
 

@@ -1,4 +1,4 @@
-"""Says how far a force can be trusted: contact fraction, model error, its parts, and up to where it holds."""
+"""Words on the trust in a force: contact fraction, model error, its parts, and the range where it holds."""
 
 import math
 from collections.abc import Iterator, Mapping
@@ -25,10 +25,10 @@ from roughmdr.schema.wording import under
 from roughmdr.stages import stages_in
 from roughmdr.variables import LATERAL
 
-_TOLD = 0.01  # parts of the model error below this are not told
+_TOLD = 0.01  # parts of the model error below this are not mentioned
 _TINY = 1e-6
 _ROUNDING = 1e-9
-"""Relative difference up to which an error is that of its contact fraction."""
+"""Relative difference within which an error counts as that of its contact fraction."""
 _NO_AREA = "not known: the asperities have no nominal area, so that nothing tells how near they are to each other"
 
 _OPENINGS = {
@@ -103,7 +103,7 @@ def trust_lines(
 
 
 def trust_of_result(result: ResultView) -> Iterator[tuple[str, str]]:
-    """Yield the lines of all runs of a result; of one made by an earlier version that it is not known."""
+    """Yield the lines of all runs of a result; for one of an earlier version, that the error is not known."""
     if set(result.variables) >= _NAMES:
         numbers = {name: result.variables[name].values for name in (_NAMES | {"grid_points"}) & set(result.variables)}
         interaction = result.attrs.get("interaction")
@@ -122,14 +122,14 @@ def trust_of_result(result: ResultView) -> Iterator[tuple[str, str]]:
 
 
 def _has_summits(table: dict[str, Any]) -> bool:
-    """Return whether the asperities of a scene are summits of a surface, as far as it says so itself."""
+    """Return whether the asperities of a scene are summits of a surface, by its source alone."""
     asperities = table.get("asperities", {})
     source, model = asperities.get("source"), asperities.get("model", "")
     return source == "nayak" or (source == "surface" and model != "hills") or (source, model) == ("spectrum", "summits")
 
 
 def pull_off_error_of(result: ResultView) -> str:
-    """Return by how much independence may change the pull-off force of a result; empty where that is not known."""
+    """Return in words the error of the pull-off force by independence; empty where that is not known."""
     tension = _at_pull_off(result)
     if not tension.size or result.attrs.get("interaction") == "pairwise":
         return ""
@@ -149,7 +149,7 @@ def _pull_off_error(tension: Floats) -> str:
 
 
 def _neighbours(known: dict[str, Floats]) -> str:
-    """Return the error that the distances of independent asperities tell, and how many of them overlap."""
+    """Return in words the error by distances of independent asperities, and the share that overlap."""
     error, overlap = (float(known[name].max(initial=0.0)) for name in ("interaction_error", "overlap_fraction"))
     if error == 0.0:
         return "a lone asperity feels no other: no error by interaction"
@@ -162,7 +162,7 @@ def _neighbours(known: dict[str, Floats]) -> str:
 
 
 def _trust(known: dict[str, Floats], coefficients: Coefficients | None, interaction: str | None) -> str:
-    """Return within which error the force holds, and up to where."""
+    """Return in words the error of the force, and the range where it holds."""
     parts = {name: float(known[name].max(initial=0.0)) for name in PARTS}
     place, rest, beyond = "along the whole path", "", known["trusted_separation"]
     if beyond.size:
@@ -180,9 +180,9 @@ def _trust(known: dict[str, Floats], coefficients: Coefficients | None, interact
 
 
 def _coupling(known: dict[str, Floats], summits: bool) -> str:
-    """Return how asperities are coupled, the error, and that of independent ones in their place."""
+    """Return in words the coupling of asperities, its error, and the error of independent ones in their place."""
     error, overlap = (float(known[name].max(initial=0.0)) for name in ("interaction_error", "overlap_fraction"))
-    if not known["overlap_fraction"].size:  # of hills it has no meaning
+    if not known["overlap_fraction"].size:  # not defined for hills
         return f"hills of a map are coupled in pairs: force along the path within {_percent(error)}"
     fraction = float(known["largest_contact_fraction"].max())
     independent = _interaction(fraction, SUMMITS if summits else ASPERITIES)
@@ -199,7 +199,7 @@ def _coupling(known: dict[str, Floats], summits: bool) -> str:
 
 
 def _trust_coupled(known: dict[str, Floats], summits: bool) -> str:
-    """Return within which error the force of coupled asperities holds, and up to where."""
+    """Return in words the error of the force of coupled asperities, and the range where it holds."""
     parts = {name: float(known[name].max(initial=0.0)) for name in PARTS}
     whole, beyond, rest = sum(parts.values()), known["trusted_separation"], ""
     if beyond.size:
@@ -212,7 +212,7 @@ def _trust_coupled(known: dict[str, Floats], summits: bool) -> str:
 
 
 def _advice(known: dict[str, Floats], coefficients: Coefficients | None) -> str:
-    """Return by how much [interaction] would better the error, if contacts overlap as often as those of this scene."""
+    """Return in words the error with [interaction], if contacts overlap as often as in this scene."""
     fraction, overlap = (known[name].max(initial=0.0) for name in ("largest_contact_fraction", "overlap_fraction"))
     if coefficients is None:
         grid = ', beyond = "boundary_elements" where contacts overlap' if overlap > MARKED_SHARE else ""
@@ -230,7 +230,7 @@ def _advice(known: dict[str, Floats], coefficients: Coefficients | None) -> str:
 
 
 def _coefficients(known: dict[str, Floats]) -> Coefficients | None:
-    """Return the coefficients that the error by interaction was estimated with; None of one by distances."""
+    """Return the coefficients of the error by interaction; None for an error by distances."""
     error, fraction = known["interaction_error"].max(), known["largest_contact_fraction"].max()
     kinds = (ASPERITIES, SUMMITS) if known["overlap_fraction"].size else (HILLS,)  # hills have no overlap
     by_fraction = {kind: float(interaction_error(fraction, kind)) for kind in kinds}
@@ -238,7 +238,7 @@ def _coefficients(known: dict[str, Floats]) -> Coefficients | None:
 
 
 def _interaction(fraction: float, coefficients: Coefficients) -> str:
-    """Return the error by interaction at a contact fraction, as it is typically, and its range."""
+    """Return in words the typical error by interaction at a contact fraction, and its range."""
     root, most = math.sqrt(fraction), float(interaction_error(np.array(fraction), coefficients))
     low, middle = (min(part * root, 1.0) for part in (coefficients.low, coefficients.typical))
     low_percent, middle_percent, most_percent = (_percent(part).removesuffix(" %") for part in (low, middle, most))

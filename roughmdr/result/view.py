@@ -1,4 +1,4 @@
-"""A result as it is read: its cells, the legs of its path, its curves, their means over the realisations."""
+"""The reader of results: cells, legs of the path, curves, and means over the realisations."""
 
 from collections.abc import Iterable, Mapping, Sequence
 from functools import cached_property
@@ -40,9 +40,9 @@ class Leg(NamedTuple):
 
 
 class ResultView:
-    """Reads a result, from its arrays or from a Dataset; of one in chunks only what is asked for is loaded.
+    """Reads a result, from its arrays or from a Dataset; of one in chunks only the arrays asked for are loaded.
 
-    What depends on all of a result is found once, when it is first asked for.
+    Properties of a whole result are computed once, when they are first asked for.
     """
 
     def __init__(self, data: "Labelled | xr.Dataset") -> None:
@@ -150,7 +150,7 @@ class ResultView:
             parts.append(f"{name} = {shown}")
         return ", ".join(parts)
 
-    # the realisations, and how they were made
+    # the realisations, and their estimators
 
     @property
     def done(self) -> NDArray[np.bool_]:
@@ -164,7 +164,7 @@ class ResultView:
 
     @property
     def realizations(self) -> int:
-        """The number of realisations that the result is made from, at most of a cell."""
+        """The largest number of realisations of a cell."""
         if "realization_count" in self.variables:
             return int(self.variables["realization_count"].values.max())
         return self.sizes.get("realization", 1)
@@ -200,7 +200,7 @@ class ResultView:
     def asked(self, names: Iterable[str]) -> list[str]:
         """Return the curves of these ``names``, or else all; StoreError for one that the result lacks.
 
-        Of a lateral path those that change along it are all.
+        On a lateral path, all are those that change along it.
         """
         found = list(names)
         if not found:

@@ -16,7 +16,7 @@ _ADDRESSES = ("tcp://", "tls://")
 
 
 class Backend(NamedTuple):
-    """A scheduler, its number of workers, and how large their tasks are."""
+    """A scheduler, its number of workers, and the size of their tasks."""
 
     scheduler: "str | Client" = "threads"  # "threads", "processes", the address of a dask cluster, or a Client of one
     workers: int = 2
@@ -31,7 +31,7 @@ class Backend(NamedTuple):
         if isinstance(scheduler, str):
             allowed = scheduler in _LOCAL or scheduler.startswith(_ADDRESSES)
         else:
-            allowed = type(scheduler).__module__.startswith("distributed.")  # which is not imported for this
+            allowed = type(scheduler).__module__.startswith("distributed.")  # distributed is not imported for this
         if not allowed:
             raise RoughmdrError(
                 f"scheduler is {scheduler!r}; it must be 'threads', 'processes', or the address of a dask cluster, "
@@ -44,7 +44,7 @@ class Backend(NamedTuple):
         return isinstance(self.scheduler, str) and self.scheduler in _LOCAL
 
     def pool(self) -> AbstractContextManager[Pool]:
-        """Open what computes the tasks; RoughmdrError where a cluster does not answer."""
+        """Open the pool that computes the tasks; RoughmdrError where a cluster does not answer."""
         if not isinstance(self.scheduler, str):
             return nullcontext(Cluster(self.scheduler))
         if self.is_local:

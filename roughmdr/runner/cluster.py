@@ -21,9 +21,9 @@ if TYPE_CHECKING:
     from distributed import Client
 
 _WINDOW = 2  # tasks submitted for each thread of the cluster: one that runs, one that is ready
-_COUNT_INTERVAL = 1.0  # between counts of the threads [s]
-_TIMEOUT = 30.0  # for an answer of the scheduler [s]
-_GREETING_TIMEOUT = 5.0  # for the first bytes of a scheduler, so that a wrong address is told within ten seconds [s]
+_COUNT_INTERVAL = 1.0  # time between counts of the threads [s]
+_TIMEOUT = 30.0  # longest wait for an answer of the scheduler [s]
+_GREETING_TIMEOUT = 5.0  # longest wait for its first bytes [s]: so a wrong address shows within ten seconds
 _GREETING = b"pickle-protocol"  # key of the handshake with which a dask scheduler opens a connection
 _GREETING_BYTES = 2**12  # first bytes of a connection, which hold that key
 

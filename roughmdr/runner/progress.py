@@ -13,8 +13,8 @@ from contextlib import contextmanager, suppress
 from roughmdr.numerics.underway import steps_done
 
 _SECONDS_BETWEEN_LINES = 10.0
-_SECONDS_OF_A_RUN = 3.0  # without one that is done, after which the bar shows their steps
-_MAX_SHOWN = 4  # runs under way that are named
+_SECONDS_OF_A_RUN = 3.0  # time [s] without a finished run after which the bar shows steps
+_MAX_SHOWN = 4  # most runs under way that are named
 
 
 class Progress:
@@ -33,7 +33,7 @@ class Progress:
 
     @property
     def _under_way(self) -> str:
-        """How far the runs are that are under way, as "; step 3 of 40"; empty where nothing is known."""
+        """Steps of the runs under way, as "; step 3 of 40"; empty where nothing is known."""
         shown = [f"step {done} of {steps}" for done, steps in steps_done()]
         more = f" and {len(shown) - _MAX_SHOWN} more" if len(shown) > _MAX_SHOWN else ""
         return f"; {', '.join(shown[:_MAX_SHOWN])}{more}" if shown else ""

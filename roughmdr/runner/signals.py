@@ -16,7 +16,7 @@ class Interrupted(KeyboardInterrupt):
 
 @contextmanager
 def interruptible(is_kept: Callable[[], bool], saved_message: Callable[[], str]) -> Iterator[threading.Event]:
-    """Make an event that is set when the batch is to stop; it ends at once unless what is finished ``is_kept``."""
+    """Make an event that is set when the batch is to stop; the batch ends at once unless finished tasks are kept."""
     stop = threading.Event()
 
     def handle(number: int, frame: FrameType | None) -> None:

@@ -1,4 +1,4 @@
-"""Small scenes that between them compile what runs need: each shape under each adhesion model, and each section."""
+"""Small scenes that together compile all that runs need: each shape under each adhesion model, and each section."""
 
 from collections.abc import Iterator
 from typing import Any

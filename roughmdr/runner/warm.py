@@ -1,4 +1,4 @@
-"""Compiles what scenes need before they are run, by runs of them along few steps, in several processes."""
+"""Compiles the functions that scenes need before they are run, by short runs in several processes."""
 
 import multiprocessing
 import time
@@ -26,7 +26,7 @@ _Used = dict[str, Path | None]
 
 
 class Warmed(NamedTuple):
-    """How many functions were compiled, how many were found in each folder, and the time [s] it took."""
+    """Numbers of functions compiled, and found in each folder, and the time [s] it took."""
 
     compiled: int
     found: dict[Path, int]
@@ -35,7 +35,7 @@ class Warmed(NamedTuple):
 
 
 def warm(scenes: Sequence[Scene], workers: int, *, quiet: bool = True) -> Warmed:
-    """Compile what the scenes need; without any, what runs need of each shape under each adhesion model.
+    """Compile the functions that the scenes need; without any, those of each shape under each adhesion model.
 
     Of a scene each cell of a sweep is run, one realisation of it along few steps. StoreError where no folder can be
     written, RoughmdrError where nothing is compiled.

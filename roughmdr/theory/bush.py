@@ -161,5 +161,5 @@ def check_load(pressure: ArrayLike, effective_modulus: float, rms_slope: float) 
     pressures = check_values("pressure", pressure, "Pa")
     if (pressures < 0.0).any():
         raise OutOfRange(f"pressure is {np.min(pressures):g} Pa; it must be at least 0")
-    with np.errstate(over="ignore"):  # beyond every float, full contact is as sure
+    with np.errstate(over="ignore"):  # a ratio beyond every float is full contact too
         return np.asarray(pressures / effective_modulus / check_number("rms_slope", rms_slope, "1"))

@@ -210,12 +210,12 @@ def representable(variable: str, values: Floats, given: Floats) -> Floats:
 
 
 class _Summits(NamedTuple):
-    """Equal summits: the contact of one, the density of their heights, and how many there are [1/m2]."""
+    """Equal summits: the contact of one, the density of their heights, and their number per area [1/m2]."""
 
     contact: Contact
     heights: Heights
     density: float
-    attraction: float = 0.0  # force [N] that is taken from that of every contact
+    attraction: float = 0.0  # force [N] that is subtracted from that of every contact
 
     @classmethod
     def of(

@@ -42,7 +42,7 @@ class Ellipses(NamedTuple):
 
     @classmethod
     def of(cls, ratio: Floats) -> "Ellipses":
-        """Return them at a given delta, from Hertz's theory (K. L. Johnson, Contact Mechanics, 1985, section 4.2).
+        """Return the contacts at a given delta, from Hertz's theory (K. L. Johnson, Contact Mechanics, 1985, sec. 4.2).
 
         With e^2 = 1 - (b/a)^2, D = (K - E)/e^2 and B = K - D, which do not cancel for nearly circular contacts:
         k2/k1 = (b/a)^2 D/B, k2 a^2 = 2 delta D/K and P = 2 pi/3 E* delta a/K.

@@ -16,9 +16,9 @@ from roughmdr.schema.arguments import check_number, exactly_one
 NORMAL_EDGES = np.array([-9.0, -5.0, -2.0, 0.0, 2.0, 5.0, 9.0, 16.0, 39.0])
 _QUANTILES = (0.01, 0.05, 0.1, 0.25, 0.5, 0.75, 0.9, 0.95, 0.99)
 _DOUBLINGS = 128
-_LIGHT_TAIL_DOUBLINGS = 40  # after which only heavy tails are followed further
+_LIGHT_TAIL_DOUBLINGS = 40  # doublings of the width of panels after which only heavy tails are followed
 _NEGLIGIBLE = 1e-20
-_BLOCK = 512  # separations at a time
+_BLOCK = 512  # number of separations in one array
 
 
 class Distribution(Protocol):
@@ -69,7 +69,7 @@ class Heights(NamedTuple):
 
         edges = np.sqrt(np.maximum(self.edges - block_start, 0.0))
         values = integrate(integrand, edges)
-        if self.endless:  # then the last panel must be negligible
+        if self.endless:  # the last panel must be negligible
             last, inside = integrate(integrand, edges[:, -2:]), edges[:, -2] > 0.0
             if (np.abs(last)[inside] > 1e-12 * np.abs(values)[inside]).any():
                 raise OutOfRange(
@@ -87,7 +87,7 @@ def _of_distribution(given: Distribution | None) -> Heights:
     first, last = np.nextafter(lowest, math.inf), np.nextafter(highest, -math.inf)
 
     def density(z: Floats) -> Floats:
-        with np.errstate(all="ignore"):  # far out some overflow on their way to 0
+        with np.errstate(all="ignore"):  # far out some densities overflow before they are 0
             return np.asarray(given.pdf(np.clip(z, first, last)), dtype=np.float64)
 
     quantiles = np.asarray(given.ppf(_QUANTILES), dtype=np.float64)
@@ -98,7 +98,7 @@ def _of_distribution(given: Distribution | None) -> Heights:
     above, below = above[above < highest], below[below > lowest]
     mass, force = density(below) * steps[: len(below)], density(above) * steps[: len(above)] ** 2.5
     far = (np.arange(len(above)) < _LIGHT_TAIL_DOUBLINGS) | (force > _NEGLIGIBLE**2 * force[:1])
-    # A thin tail lies all within one panel; above, one more shows that nothing is left.
+    # A thin tail lies within one panel; one more above it shows that nothing is left.
     above = above[_extended(_extended((force > 0.0) & far))]
     inner = [below[_extended(mass > _NEGLIGIBLE)], quantiles, above]
     ends = [end for end in (lowest, highest) if math.isfinite(end)]

@@ -1,4 +1,4 @@
-"""Persson's theory of randomly rough surfaces: real contact area, mean gap, and the pressure that leaves a gap."""
+"""Persson's theory of randomly rough surfaces: real contact area, mean gap, and the pressure at a mean gap."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from roughmdr.theory.equal_summits import representable
 
 # Fourfold shorter intervals of log(q/q0) down to q0, where few waves are in play and the load flattens them all.
 _INTERVALS_TO_LONGEST = 45
-_EXP_ZERO = 30.0  # exp(-x^2) is 0 beyond
+_EXP_ZERO = 30.0  # x beyond which exp(-x^2) is 0
 # Logarithms of the pressure over E* h' between which the root lies: of the squares of both a float holds what it must.
 _LOG_MIN, _LOG_MAX = -350.0, math.log(25.0)
 
@@ -192,7 +192,7 @@ def _slopes(spectrum: Spectrum | MapSpectrum) -> tuple[Floats, Floats, Floats]:
         change = 0.5 * spectrum.q * spectrum.q * spectrum.variance
         after = np.sqrt(np.cumsum(change))
         before = np.concatenate([[0.0], after[:-1]])
-        return spectrum.q, 0.25 * (before + after) ** 2, change  # the mean of w over each change is right
+        return spectrum.q, 0.25 * (before + after) ** 2, change  # the mean of w over each change is exact
     q0, q1 = wave_number_range(spectrum)
     octaves = math.log(q1 / q0)
     near = min(octaves, 1.0)

@@ -68,7 +68,7 @@ REFERENCE_VARIABLES = declare(
 """Variables of a law by boundary elements beside that of the asperities."""
 
 LATERAL = Variable("lateral", "m", "lateral displacement of the flat, from rest")
-"""The coordinate of a lateral path, on which a separation or a load is held."""
+"""The coordinate of a lateral path, at constant separation or load."""
 
 NOMINAL_VARIABLES = declare(
     ("nominal_contact_radius", "m", "effective radius of the pressure of the contacts that push under a curved body"),
@@ -100,7 +100,7 @@ PRELOADS = {
     "preload_pressure": ("pressure", "Pa"),
     "preload_contact_fraction": ("contact_fraction", "1"),
 }
-"""Preloads that a path can lead to: the quantity that loading goes on to, and its unit."""
+"""Preloads that a path can lead to: the quantity at which loading ends, and its unit."""
 
 LOSSES = {"dissipated_energy", "machine_dissipated_energy"}
 """Energies that jumps lose; under a machine each jump is located for them."""

@@ -21,7 +21,7 @@ _MOMENTS = ("m0", "m2", "m4")
 _WAVES = ("hurst", "long_wave", "short_wave")
 _AMPLITUDES = ("rms_height", "rms_slope")
 _EITHER = "takes m0, m2 and m4, or hurst, long_wave, short_wave and one of rms_height and rms_slope"
-_RADII, _MAX_SCORE = 33, 9.0  # radii between their tails, and the score up to which ``product_of_score`` is right
+_RADII, _MAX_SCORE = 33, 9.0  # number of radii between their tails, and largest score of ``product_of_score``
 SUMMIT_DISTANCE = 0.5
 """Least distance of two summits over their mean spacing, 1/sqrt(density), unless min_distance is given.
 
@@ -164,7 +164,7 @@ class NayakAsperities(PatchSource):
     def _heights(self, v: float) -> Heights:
         """Return the heights of the summits with the product of curvatures v."""
         edges = self.summits.height_range(v, HEIGHT_END)
-        tail = UpperTail(0.0, 0.0)  # lighter than the normal one
+        tail = UpperTail(0.0, 0.0)  # the tail is lighter than the normal one
         return Heights(partial(self.summits.height_density, v=v), None, edges, self.summits.height_spread, tail, 0.0)
 
     def extremes(self, chance: float) -> Ensemble:

@@ -30,10 +30,10 @@ _TAIL_WIDTH = 12.0  # distance [sqrt(v)] above which a negligible fraction of th
 _NORMAL = Distribution("norm", (), 0.0, 1.0)
 _NORM = math.sqrt(6.0 / math.pi)  # factor of the density of S
 _SMALL_V = 0.5  # v up to which v - 1 + exp(-v) is summed as a series, since the difference cancels
-_SMALL_S = 1.0  # likewise for the fraction below S
+_SMALL_S = 1.0  # S up to which the fraction below S is summed as a series, for the same reason
 _EXCESS = [(-1.0) ** k / math.factorial(k) for k in range(2, 17)]
 _BELOW = [(-0.5) ** k * (3**k - 1 - 2 * k) / (math.factorial(k) * (2 * k + 1)) for k in range(2, 23)]
-_MAX_S = 10.0  # no uniform number leads beyond
+_MAX_S = 10.0  # largest S that a uniform number gives
 _TABLE_SIZE = 2049
 _PANELS = np.linspace(-10.0, 10.0, 41)  # ends of the panels of integrals over S
 

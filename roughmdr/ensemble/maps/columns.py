@@ -25,7 +25,7 @@ _TITLE = re.compile(
 
 
 def is_of_points(table: TextTable) -> bool:
-    """Return whether rows are points with three coordinates: not a map that is three points wide.
+    """Return whether rows are points with three coordinates, in contrast to a map that is three points wide.
 
     RoughmdrError where they are points with further numbers.
     """

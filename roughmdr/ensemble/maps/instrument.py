@@ -17,7 +17,7 @@ def read_instrument(path: Path, channel: str | None) -> RawMap:
     NaN is undefined. RoughmdrError where SurfaceTopography is missing, or reads no such map.
     """
     kind = path.suffix or "a format without a suffix"
-    with warnings.catch_warnings(action="ignore"):  # about other contents, or packages not installed
+    with warnings.catch_warnings(action="ignore"):  # these are about other contents, or packages not installed
         try:
             from SurfaceTopography.IO import open_topography
         except ImportError:

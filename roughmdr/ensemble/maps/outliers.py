@@ -21,16 +21,16 @@ Treatment = Literal["undefined", "kept"]
 _SPIKE = 5.0
 """Height of a spike beyond all but one of its neighbours, over their range and over ``_Steps.large``."""
 _FEWEST, _TIMES = 10, 5.0
-"""Points that share one value, and how many times as many they are as at values next to it: no chance any more."""
+"""Numbers of points with one value that chance does not explain: the least, and the least over those of next values."""
 _JUMP = 2.5
 """Median step from such points to their neighbours, over the median step of the map, beyond which they are a mark; at a
 clipped top it is about 1."""
-_LEAST_KNOWN = 0.6  # share of the neighbours of a spike that are not undefined: at an edge, not at a corner
-_LARGE = 1.5  # the step that 95 % are smaller than, over that of 80 %, where they are Gaussian
-_NEAR = 10  # distinct heights next to a value that its number of points is compared with
-_MOST_MARKS = 8  # different marks in one map
-_SAMPLE = 2**16  # points of the map that its steps and the numbers of equal heights are taken from
-_FEWEST_STEPS = 7  # between numbers of a row that may be coordinates
+_LEAST_KNOWN = 0.6  # least share of defined neighbours of a spike: an edge has it, a corner does not
+_LARGE = 1.5  # 95 % quantile of steps over that of 80 %, for Gaussian steps
+_NEAR = 10  # distinct heights next to a value whose numbers of points are compared with its own
+_MOST_MARKS = 8  # most different marks in one map
+_SAMPLE = 2**16  # points of the sample for steps and numbers of equal heights
+_FEWEST_STEPS = 7  # fewest steps of a row that may be coordinates
 _EVEN, _UNEVEN, _LESS_EVEN = 0.3, 0.5, 4.0
 """Relative range of the steps of coordinates at most, with their rounding; of heights in the next row at least, and
 over that of the coordinates."""
@@ -45,22 +45,22 @@ class _Steps(NamedTuple):
     """Differences of neighbours that are not equal, in magnitude."""
 
     median: float
-    large: float  # 95 % are smaller where they are Gaussian
+    large: float  # 95 % quantile of Gaussian steps
 
 
 class _Finding(NamedTuple):
     text: str
     points: NDArray[np.intp]  # flat indices of points to leave out
-    matters: bool = True  # to a law of light contact, which the lowest points do not bear
+    matters: bool = True  # whether a law of light contact depends on them: not on the lowest points
 
 
 def leave_out_outliers(
     height: Floats, treatment: Treatment | None, unit: str, *, periodic: bool
 ) -> dict[str, int | str]:
-    """Set outliers of a map, heights in ``unit`` over x and y, to NaN, in place; return what was found, as attributes.
+    """Set outliers of a map, heights in ``unit`` over x and y, to NaN, in place; return those found, as attributes.
 
-    Without a ``treatment`` RoughmdrError names outliers that matter, as number, value and place. So it does, unless all
-    are "kept", where no law can follow: of coordinates among the heights, and where the highest part is clipped.
+    Without a ``treatment`` RoughmdrError names outliers that matter, with number, value and position. Unless all are
+    "kept", it is also raised for coordinates among the heights and for a clipped highest part, which allow no law.
     """
     if treatment == "kept" or min(height.shape) < 3:
         return {}
@@ -71,7 +71,7 @@ def leave_out_outliers(
             found += spikes
             if treatment is None:
                 break
-            for each in spikes:  # so that those beside them are found
+            for each in spikes:  # set them to NaN, so that spikes beside them are found
                 height.flat[each.points] = np.nan
         clipped = list(_clipped(height, unit))
         if not any(each.matters for each in clipped):
@@ -110,7 +110,7 @@ def _refuse_coordinates(height: Floats) -> None:
 
 
 def _unevenness(values: Floats) -> float:
-    """Return the range of the steps over their mean; infinite where they do not go one way, or are too few to tell."""
+    """Return the range of the steps over their mean; infinite where their signs differ, or they are too few."""
     steps = np.diff(values)
     one_way = bool((steps > 0.0).all() or (steps < 0.0).all())
     if steps.size < _FEWEST_STEPS or not one_way:
@@ -119,8 +119,8 @@ def _unevenness(values: Floats) -> float:
 
 
 def _marks(height: Floats, unit: str) -> Iterator[_Finding]:
-    """Yield values that mark undefined points, and set these to NaN: they stand apart from all others, or many points
-    share them that do not join on to their neighbours.
+    """Yield values that mark undefined points, and set these to NaN: values far from all others, or of many points that
+    are far from their neighbours.
     """
     for _ in range(_MOST_MARKS):
         levels, counts = _levels(height)
@@ -222,7 +222,7 @@ def _at(height: Floats, points: NDArray[np.intp]) -> str:
 
 
 def _ends(height: Floats, without: tuple[float, ...]) -> tuple[float, float]:
-    """Return the lowest and the highest value that is none of some others; infinite where there is none."""
+    """Return the lowest and the highest value other than the given ones; infinite where there is none."""
     low, high = np.inf, -np.inf
     for rows in blocks(*height.shape):
         kept = height[rows][np.isfinite(height[rows]) & ~np.isin(height[rows], without)]
@@ -231,7 +231,7 @@ def _ends(height: Floats, without: tuple[float, ...]) -> tuple[float, float]:
 
 
 def _levels(height: Floats) -> tuple[Floats, NDArray[np.intp]]:
-    """Return the distinct heights of a sample of rows, and how many points of the map, about, have each."""
+    """Return the distinct heights of a sample of rows, and estimates of the number of points of the map with each."""
     every = -(-height.size // _SAMPLE)
     sample = height[::every]
     levels, counts = np.unique(sample[np.isfinite(sample)], return_counts=True)
@@ -239,7 +239,7 @@ def _levels(height: Floats) -> tuple[Floats, NDArray[np.intp]]:
 
 
 def _is_frequent(value: float, number: int, levels: Floats, counts: NDArray[np.intp], size: int) -> bool:
-    """Return whether many more points share a value than share those next to it."""
+    """Return whether many more points have a value than have the values next to it."""
     at = int(np.searchsorted(levels, value))
     others = [k for k in range(max(at - _NEAR, 0), min(at + _NEAR + 1, levels.size)) if levels[k] != value]
     if number < _FEWEST or len(others) < _NEAR:
@@ -248,14 +248,14 @@ def _is_frequent(value: float, number: int, levels: Floats, counts: NDArray[np.i
 
 
 def _steps(height: Floats, without: Iterable[float]) -> _Steps:
-    """Return the steps between neighbours in a sample of rows, of which values may be left out."""
+    """Return the steps between neighbours in a sample of rows, without those at given values."""
     rows = np.arange(0, height.shape[0] - 1, -(-height.size // _SAMPLE))
     part, after = (np.where(np.isin(each, list(without)), np.nan, each) for each in (height[rows], height[rows + 1]))
     steps = np.abs(np.concatenate([(after - part).ravel(), np.diff(part, axis=1).ravel()]))
     steps = steps[(steps > 0.0) & np.isfinite(steps)]
     if not steps.size:
         return _Steps(0.0, 0.0)
-    median, most = np.quantile(steps, [0.5, 0.8]).tolist()  # spikes of 10 % of the points change no more of them
+    median, most = np.quantile(steps, [0.5, 0.8]).tolist()  # robust to spikes at up to 10 % of the points
     return _Steps(median, _LARGE * most)
 
 

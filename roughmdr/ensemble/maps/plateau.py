@@ -15,21 +15,21 @@ from roughmdr.numerics.arguments import Floats
 _USUAL = 0.7
 """Quantile of the curvatures that flat points are compared with: less than 30 % of the points lie beside an edge."""
 _FLAT = (0.001, 0.01, 0.05, 0.1, 0.2)
-"""Curvature of a flat point at most, over the usual one: without noise, and with more and more."""
+"""Largest curvature of a flat point, over the usual one: without noise, then with increasing noise."""
 _EXACT, _ROUNDED = 0.01, 1e-4
-"""Thickness of a plateau, over the usual curvature: that no true surface has at all its tops, and without noise."""
-_COARSER = (1, 2, 4, 8)  # points along the side of a block whose mean is taken: noise falls, curvature rises
-_FEWEST, _FEWEST_NOISY = 16, 50  # flat points, or blocks, of a plateau; points of one whose noise is to be told
-_MOST = 0.3  # share of flat points that must lie on the plateau: on rough maps they lie at any height
-_RISING = 0.1  # points beside a plateau and above it, over those below it, at most
+"""Largest thickness of a plateau, over the usual curvature: less than on any true surface; and without noise."""
+_COARSER = (1, 2, 4, 8)  # points along the side of a block that is averaged: noise falls, curvature rises
+_FEWEST, _FEWEST_NOISY = 16, 50  # fewest flat points, or blocks, of a plateau; fewest to judge its noise
+_MOST = 0.3  # least share of flat points on the plateau: on rough maps they lie at any height
+_RISING = 0.1  # largest ratio of points beside a plateau that are above it to those below it
 _BESIDE = 3  # points around a plateau that count as beside it
-_WHITE = 0.3  # correlation of signs of noise at neighbouring points at most; true roughness of tops has more
+_WHITE = 0.3  # largest correlation of the signs of noise at neighbouring points; true roughness has more
 _MEDIAN_OF_NORMAL = 0.6745  # median magnitude of normal numbers, over their standard deviation
-_MOST_COMPARED = 2**16  # points whose curvatures tell the usual one
-_WITHIN = 3.0  # distance of points of a plateau from its plane at most, over its thickness
+_MOST_COMPARED = 2**16  # most points of the sample for the usual curvature
+_WITHIN = 3.0  # largest distance of points of a plateau from its plane, over its thickness
 _SAMPLE, _ITERATIONS = 500, 20  # points and rounds of a fit by least absolute deviations
 _ABOVE = 4.0  # weight of a deviation above, over that of one below: the fit is that of the quantile of 80 %
-_LEAST_RESIDUAL = 1e-3  # residual over the curvature of flat points, below which all weigh the same
+_LEAST_RESIDUAL = 1e-3  # residual over the curvature of flat points, below which weights are equal
 _ROUNDING = 1e-13  # curvature over the largest height, below which it is a rounding error
 
 
@@ -96,7 +96,7 @@ def _curvature(height: Floats) -> Floats:
 
 
 def _usual(curvature: Floats) -> float:
-    """Return the curvature that flat points are compared with; 0 where there are too few to tell."""
+    """Return the curvature that flat points are compared with; 0 where there are too few points."""
     known = curvature.ravel()[:: -(-curvature.size // _MOST_COMPARED)]
     known = known[np.isfinite(known)]
     return float(np.quantile(known, _USUAL)) if known.size >= _FEWEST else 0.0
@@ -147,8 +147,8 @@ def _is_white(noise: Floats) -> bool:
 
 
 def _fit(powers: Floats, height: Floats, least: float) -> Floats:
-    """Return the coefficients of a quantile: of least absolute deviations, those above weighed more, since tops are no
-    higher; those below ``least`` count as that.
+    """Return the coefficients of a quantile, by least absolute deviations with more weight above, since tops are no
+    higher; deviations below ``least`` count as that.
     """
     weight = np.ones(height.size)
     for _ in range(_ITERATIONS):

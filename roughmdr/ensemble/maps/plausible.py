@@ -15,8 +15,8 @@ _HEIGHTS = 1e-11, 1e-2
 
 
 def implausible(attrs: Mapping[str, float | int | str]) -> str:
-    """Return which numbers of a map, from the attributes of its ensemble, tell that its size or unit is not right;
-    empty where none does.
+    """Return which numbers of a map, from the attributes of its ensemble, are impossible with a correct size and unit;
+    empty for none.
     """
     slope, height = float(attrs["rms_slope"]), float(attrs["rms_height"])
     sides = [float(attrs[name]) for name in ("patch_x", "patch_y")]

@@ -27,7 +27,7 @@ _SQUARE = math.log(1.05)  # logarithm of the ratio of the spacings of a grid tha
 
 
 class RawMap(NamedTuple):
-    """A map as a file states it; None is what the file does not say."""
+    """A map as a file states it; None where the file does not."""
 
     height: NDArray[Any]  # over x and y, not yet checked; it may be overwritten
     unit: str | None = None  # of the heights
@@ -132,7 +132,7 @@ def _along_axes(size: Size, rows_along: str) -> tuple[float, float]:
 def _scaled(
     steps: tuple[float, float], points: tuple[int, int], size: Size | None, unit: str | None
 ) -> tuple[float, float]:
-    """Return spacings [m] by coordinates without a unit: that in which they agree with the size, or else ``unit``."""
+    """Return spacings [m] by coordinates without a unit, in the unit that agrees with the size, or else in ``unit``."""
     if unit is None:
         raise RoughmdrError(
             f"its coordinates, {points[0]} along x and {points[1]} along y, {steps[0]:.4g} and {steps[1]:.4g} "

@@ -39,10 +39,10 @@ def read_map(
     periodic: bool | None = None,
     outliers: Treatment | None = None,
 ) -> HeightMap:
-    """Read the map of a file; ``size`` [m] and ``unit`` say what the file does not, ``channel`` which of its maps.
+    """Read the map of a file; ``size`` [m] and ``unit`` add what the file lacks, ``channel`` chooses among its maps.
 
-    ``periodic`` overrides the file; ``outliers`` says what becomes of them. RoughmdrError where there is no map, where
-    these do not fit it, and where it has outliers of which it is not said.
+    ``periodic`` overrides the file; ``outliers`` is their treatment. RoughmdrError where there is no map, where these
+    do not fit it, and where it has outliers without a treatment.
     """
     raw = _reader(path)(path, channel)
     values = raw.height

@@ -1,11 +1,11 @@
-"""How far the radii of the summits of a map may be off, judged by the map itself.
+"""The error of the radii of the summits of a map, estimated from the map itself.
 
 Measured on Gaussian maps whose summits are known (waves of one length, and self-affine ones of Hurst exponent 0.3 and
 0.8 over a factor of 4 to 16), sampled at 2 to 40 points a shortest wave, with white noise of 0 to 0.1 of the r.m.s.
 height: where the mean curvature is off by more than 5 %, the estimate is 0.84 to 1.9 times that in 90 % of 728 maps;
 none that is off by more than 20 % is taken for resolved. Heights in steps are noise of that kind; noise that neighbours
-share, as of a map that was smoothed, is not seen: of a mean over 2 x 2 points a misfit of 0.3 goes with 20 %, 0.6 with
-factors of 2 and more.
+share, as on a smoothed map, is not seen: for means over 2 x 2 points a misfit of 0.3 goes with 20 %, 0.6 with factors
+of 2 and more.
 """
 
 import math
@@ -27,7 +27,7 @@ MAX_SUMMITS_ERROR = FORCE_PER_RADIUS * MAX_UNCERTAINTY
 _FEWEST_PER_MISFIT = 6.0
 _USUAL_PER_MISFIT = 12.0
 _MISFIT_OF_NOISE = 1.07  # misfit of maps that are white noise alone, which have 9.5 points a summit
-_MAX_NOISE = 0.99  # share of the squared curvature above which no map tells how much is noise
+_MAX_NOISE = 0.99  # largest share of noise in the squared curvature that is estimated
 
 MAX_HILLS_ERROR = 0.05
 """Error of the force of hills by the resolution of their map above which there is a warning."""
@@ -43,15 +43,15 @@ _CAUSES = {
 
 
 def sampling_error(points_per_summit: float, misfit: float) -> float:
-    """Return by how much the radii are too large for want of points, relative to themselves."""
+    """Return the relative excess of the radii by too few points."""
     return min(misfit, _USUAL_PER_MISFIT / points_per_summit, 1.0)
 
 
 def noise_error(points_per_summit: float, misfit: float) -> float:
-    """Return by how much the radii are too small because of white noise, relative to themselves.
+    """Return the relative deficit of the radii by white noise.
 
-    The squares of the curvatures of surface and noise add up, and so do those of the fourth differences: of the share s
-    of the noise in the one follows the misfit, and the radius without noise is 1/sqrt(1 - s) times as large.
+    The squares of the curvatures of surface and noise add up, and so do those of the fourth differences. So the misfit
+    gives the share s of the noise in the squared curvature; without noise the radius is 1/sqrt(1 - s) times as large.
     """
     smooth = min(_FEWEST_PER_MISFIT / points_per_summit, 1.0)
     share = (misfit - smooth) * (misfit + smooth) / ((_MISFIT_OF_NOISE - smooth) * (_MISFIT_OF_NOISE + smooth))
@@ -59,7 +59,7 @@ def noise_error(points_per_summit: float, misfit: float) -> float:
 
 
 def cutoff_error(radius: float, uncut_radius: float) -> float:
-    """Return by how much the radii are too large if all that a cutoff takes away was real, relative to themselves."""
+    """Return the relative excess of the radii by a cutoff, if all that it removes was real."""
     return max(1.0 - uncut_radius / radius, 0.0)
 
 
@@ -77,12 +77,12 @@ def radius_errors(attrs: Mapping[str, float | int | str]) -> dict[str, float]:
 
 
 def radius_uncertainty(attrs: Mapping[str, float | int | str]) -> float:
-    """Return the largest of these errors: about how far a radius of the ensemble may be off, over that radius."""
+    """Return the largest of these errors: the relative uncertainty of a radius of the ensemble."""
     return max(radius_errors(attrs).values())
 
 
 def hills_error(points_per_wave: float) -> float:
-    """Return by how much the force of hills is too low for want of points, relative to itself.
+    """Return the relative deficit of the force of hills by too few points.
 
     Measured on band-limited maps at 2 to 12 points a shortest wave, the force between 0.3 and 20 % contact, in the mean
     (``pipelines/hills.py``): 10 to 13 % at 4.2 points a wavelength (``hills.find``), 4 to 5 % at 5.7, 2 % at 7.
@@ -91,8 +91,8 @@ def hills_error(points_per_wave: float) -> float:
 
 
 def border_error(wavelength: float, side_x: float, side_y: float) -> float:
-    """Return by how much the force of the hills of a map that ends is too low for those whose tops lie beyond its
-    border, lengths in one unit: the share of a strip of one wavelength.
+    """Return the relative deficit of the force of hills by those with tops beyond the border of a map, lengths in one
+    unit: the share of a strip of one wavelength.
 
     Against boundary elements of a profilometer map, 0.3 to 20 % contact, 8 to 27 % were missing where this is 28 %, and
     15 to 34 % where it is 24 %, at light contact; of a film 9 % where it is 12 % (``pipelines/hills.py``).
@@ -118,7 +118,7 @@ def hills_warning(name: str, attrs: Mapping[str, float | int | str]) -> str:
 
 
 def verdict(attrs: Mapping[str, float | int | str]) -> str:
-    """Return in words how far the radii are right, and if they are not, why."""
+    """Return in words the uncertainty of the radii, with its cause if it is large."""
     errors = radius_errors(attrs)
     cause = max(errors, key=errors.__getitem__)
     error = errors[cause]

@@ -23,7 +23,7 @@ from roughmdr.schema.units import unit_factor
 
 _ROUNDING = 64 * np.finfo(float).eps  # rounding error of heights after a trend was removed, over the largest height
 _UNCUT = ("rms_height", "rms_slope", "mean_curvature_radius")
-"""Attributes of an ensemble that tell of its map as it was before the cutoff, too."""
+"""Attributes of an ensemble that are given for the map before the cutoff too."""
 
 
 class SurfaceAsperities(FromFile):
@@ -87,7 +87,7 @@ class SurfaceAsperities(FromFile):
         return bool(self.asperities.attrs["periodic"])
 
     def height_map(self, seed: int, realization: int) -> HeightMap:
-        """Return the map as it is after its trend and short waves were removed; SceneError where it cannot be read."""
+        """Return the map without trend and short waves; SceneError where it cannot be read."""
         try:
             surface = self._read_map()
             self._remove_trend(surface)
@@ -99,7 +99,7 @@ class SurfaceAsperities(FromFile):
 
     @cached_property
     def waves(self) -> MapWaves:
-        """The waves of the map that the summits are those of; SceneError where it cannot be read."""
+        """The waves of the map of the summits; SceneError where it cannot be read."""
         return MapWaves.of(self.height_map(0, 0), self.cutoff)
 
     def _read_map(self) -> HeightMap:

@@ -24,7 +24,7 @@ class _Fits(NamedTuple):
     second: Floats  # h_xx + h_yy
     fourth: Floats  # h_xxyy
     candidates: int  # the number of points above their neighbours, saddles included
-    blind: int  # the number of points beside undefined ones, which cannot be told to be summits
+    blind: int  # the number of points beside undefined ones, which may be summits or not
 
 
 def find_summits(surface: HeightMap, noise: float = 0.0) -> Ensemble:

@@ -1,4 +1,4 @@
-"""The words by which headers of text files say what a map is: those of Gwyddion, SPIP, Nova, Keyence, ESRI grids.
+"""The words by which headers of text files describe a map: those of Gwyddion, SPIP, Nova, Keyence, ESRI grids.
 
 A word stands at the beginning of a line, with or without quotes; a colon, an equals sign, a delimiter or blanks follow,
 then what it says. Gwyddion translates its words into the language of its user.
@@ -41,7 +41,7 @@ _NUMBER = re.compile(
     re.IGNORECASE,
 )
 """A number, and a unit that may stand in quotes or brackets, and be one of a length per pixel."""
-_OF_WORDS = ("channel", "lateral", "unit")  # say a word, all others a number
+_OF_WORDS = ("channel", "lateral", "unit")  # lines with a word; all others have a number
 
 
 class Said(NamedTuple):
@@ -54,14 +54,14 @@ class Said(NamedTuple):
 
     @property
     def points(self) -> int:
-        """The number of points that it says; RoughmdrError where it is none."""
+        """The entry as a number of points; RoughmdrError where it is none."""
         if self.unit or not self.number.is_integer() or self.number < 1.0:
             raise RoughmdrError(f"line {self.line}: {self.text!r} is no number of points")
         return int(self.number)
 
 
 def read_header(comments: Iterable[tuple[int, str]]) -> dict[str, Said]:
-    """Return what numbered lines say, by the names of ``_WORDS``; of two lines that say the same, the last."""
+    """Return the entries of numbered lines by the names of ``_WORDS``; the last of two with one name."""
     said = dict[str, Said]()
     for line, comment in comments:
         for name, pattern in _LINES.items():

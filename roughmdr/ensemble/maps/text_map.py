@@ -15,7 +15,7 @@ from roughmdr.errors import RoughmdrError
 from roughmdr.numerics.arguments import Floats
 from roughmdr.schema.units import unit_factor
 
-_OF_ROWS = {"across", "down", "step", "columns"}  # said in a header: the rows are no points
+_OF_ROWS = {"across", "down", "step", "columns"}  # entries of a header with which rows are no points
 _OF_INSTRUMENTS = ("aISO", "bISO", "aBCR", "bBCR", "fileformat", "Wyko")
 """Beginnings of text formats whose rows are not those of the map, or whose heights are in units of their own."""
 
@@ -95,7 +95,7 @@ def _map_of(rows: Floats, header: dict[str, Said]) -> RawMap:
 def _spacing(header: dict[str, Said], names: tuple[str, ...], points: int) -> tuple[float, str | None] | None:
     """Return the spacing along an axis, and its unit, by the first of some words: a side, or steps; None without one.
 
-    A width of as many as there are points, without a unit, is their number.
+    A width without a unit that equals the number of points is that number.
     """
     for name in names:
         said = header.get(name)

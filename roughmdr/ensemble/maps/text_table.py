@@ -25,12 +25,12 @@ class Line(NamedTuple):
 
 
 class TextTable(NamedTuple):
-    """Rows of numbers, and what else the file holds."""
+    """Rows of numbers, with comments and header of the file."""
 
-    numbers: Floats  # NaN where a word says that there is none
+    numbers: Floats  # NaN for words that stand for no number
     comments: list[Line]  # after #, or before the first row
     lines: list[int]  # numbers of the lines that the rows begin on
-    header: dict[str, Said]  # what comments say of the map
+    header: dict[str, Said]  # entries on the map in the comments
 
 
 def text_of(path: Path) -> str | None:
@@ -95,7 +95,7 @@ def _in_rows(values: Floats, counts: list[int], lines: list[int], header: dict[s
         hint = "; coordinates in the first row and column are no heights" if other == 1 else ""
         raise RoughmdrError(f"line {lines[other]} has {counts[other]} numbers, but line {lines[0]} has {width}{hint}")
     is_whole = rows is not None and values.size % (width * rows.points) == 0
-    if not is_whole or len(counts) == width:  # else rows and columns may be taken for each other
+    if not is_whole or len(counts) == width:  # otherwise rows and columns may be confused
         raise RoughmdrError(
             f"line {lines[other]} has {counts[other]} numbers, but line {columns.line} says {width} a row; all "
             f"{len(counts)} lines have {values.size}"
@@ -104,7 +104,7 @@ def _in_rows(values: Floats, counts: list[int], lines: list[int], header: dict[s
 
 
 def _delimiter(row: str) -> str | None:
-    """Return what separates the numbers of a row; None for blanks."""
+    """Return the delimiter of the numbers of a row; None for blanks."""
     found = next((mark for mark in _DELIMITERS if mark in row), None)
     words = row.split()
     return None if found == "," and len(words) > 1 and all(map(_DECIMAL_COMMA.fullmatch, words)) else found
@@ -128,7 +128,7 @@ def _refuse_mostly_numbers(titles: list[Line], delimiter: str | None, columns: i
 
 
 def _value(word: str, delimiter: str | None) -> float | None:
-    """Return the number that a word is, NaN for an undefined one, or None; its comma is a decimal mark."""
+    """Return a word as a number, NaN for an undefined one, or None; a comma in it is a decimal mark."""
     word = word.strip().strip('"')
     if word.lower() in _UNDEFINED:
         return np.nan

@@ -12,7 +12,7 @@ _BINS = 400  # number of bins of the wave number, equal on a logarithmic scale
 
 
 class MapWaves(NamedTuple):
-    """A map as theories of rough surfaces take it: isotropic and Gaussian."""
+    """A map as theories of rough surfaces need it: isotropic and Gaussian."""
 
     mean: float  # height [m]
     moments: Moments  # of a profile, averaged over all directions
@@ -92,7 +92,7 @@ def _spectrum(surface: HeightMap, mean: float) -> MapSpectrum:
 
 
 def _binned(q: Floats, variance: Floats) -> MapSpectrum:
-    """Return waves in bins; the slope of each bin is that of its waves."""
+    """Return waves in bins, each with the mean square slope of its waves."""
     log_q = np.log(q / q.min())
     numbers = np.minimum((log_q * (_BINS / log_q.max())).astype(np.int64), _BINS - 1)
     of_heights, of_slopes = (

@@ -52,7 +52,7 @@ def describe_map(attrs: Mapping[str, float | int | str]) -> tuple[str, ...]:
 
 
 def describe_moments(waves: MapWaves) -> str:
-    """Return the moments that a theory takes from a map, and what decides them."""
+    """Return the moments of a map that a theory needs, with the shortest wave that determines them."""
     m0, m2, m4 = waves.moments
     return (
         f"moments of the map: m0 = {m0:.3g} m2, m2 = {m2:.3g}, m4 = {m4:.3g} m-2, by differences of neighbours; "
@@ -61,7 +61,7 @@ def describe_moments(waves: MapWaves) -> str:
 
 
 def describe_spectrum(waves: MapWaves) -> str:
-    """Return what a theory takes from the spectrum of a map."""
+    """Return the parameters of the spectrum of a map that a theory needs."""
     slope = "" if waves.spectrum is None else f", r.m.s. slope {waves.spectrum.rms_slope:.3g}"
     return f"spectrum of the map down to waves of {_shortest(waves)}{slope}"
 

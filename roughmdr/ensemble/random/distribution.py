@@ -14,10 +14,10 @@ from roughmdr.numerics.arguments import Floats
 _SCORES, _SCORE_STEP = np.linspace(-37.0, 37.0, 2369, retstep=True)
 _FAR_SCORE, _NEGLIGIBLE = 8.0, 1e-14  # values beyond this score are checked unless negligible in the mean of cubes
 _MEAN_ERROR = 1e-9  # error of a mean over the standard deviation: scipy integrates some to no more digits
-_DRAW_SCORES = np.arange(-8.0, 9.0)  # normal scores as far as draws reach
-_BROAD = 0.2  # change of log(value) in one normal score up to which a few draws show the spread of forces
+_DRAW_SCORES = np.arange(-8.0, 9.0)  # normal scores that draws can have
+_BROAD = 0.2  # largest change of log(value) per normal score with which a few draws show the spread of forces
 _LONG_TAIL = 15.0  # distance of score 8 from the median over that of score 2: 4 where normal, 11 where exponential
-_FAR_FRACTION = 1e-15  # beyond it some inverses of scipy are wrong by orders of magnitude, as that of invgauss
+_FAR_FRACTION = 1e-15  # fraction beyond which some inverses of scipy are wrong by orders of magnitude, e.g. invgauss
 
 
 @dataclass(frozen=True)
@@ -31,7 +31,7 @@ class Distribution:
     min: float = -math.inf  # where it is truncated below
     max: float = math.inf  # where it is truncated above
     location_given: bool = field(default=True, repr=False, compare=False)
-    """Whether the user gave its location, which changes no number; else ``loc`` is 0, as in scipy.stats."""
+    """Whether the user gave the location (for a warning alone); else ``loc`` is 0, as in scipy.stats."""
 
     @property
     def constant(self) -> float | None:
@@ -193,7 +193,7 @@ class Distribution:
 
     @cached_property
     def broad(self) -> bool:
-        """Whether its values, all above 0, differ by large factors: anywhere more so than in a narrow lognormal one."""
+        """Whether its values, all above 0, differ by large factors, anywhere more than in a narrow lognormal one."""
         return float(np.max(np.diff(np.log(self.from_scores(_DRAW_SCORES))))) > _BROAD
 
     @cached_property

@@ -34,7 +34,7 @@ def heights_of(distribution: Distribution) -> Heights:
 
 
 def heights_given(distribution: Distribution, score: float, correlation: float) -> Heights:
-    """Return the heights that go with a normal score of another quantity, by a normal copula."""
+    """Return the heights given a normal score of another quantity, by a normal copula."""
     if distribution.constant is not None:
         return Heights.all_at(distribution.constant)
     relative = distribution.relative_to_loc

@@ -1,4 +1,4 @@
-"""source = "random": what the sections of all shapes have in common, and what a run asks of them."""
+"""source = "random": the part that the sections of all shapes have in common."""
 
 import math
 from collections.abc import Callable, Iterator
@@ -174,7 +174,7 @@ class RandomAsperities(PatchSource):
         return self.populations.sigma
 
     def reason_against(self, estimator: str) -> str:
-        """Return why the expected law is impossible: random heights must be more than a function of parameters."""
+        """Return why the expected law is impossible: where random heights are a function of the parameters."""
         if estimator == "expected" and abs(self.populations.rank_correlation) == 1.0:
             return "the height alone determines the parameter that is correlated with it"
         return ""

@@ -20,8 +20,8 @@ from roughmdr.errors import OutOfRange, RoughmdrError
 from roughmdr.schema.quantities import EntryError, Length, Quantity
 from roughmdr.spectrum import Moments, SelfAffine
 
-_LARGEST_MAP = 8192  # points along a side
-_MARGIN = 1.02  # points over twice the waves along a side, at least
+_LARGEST_MAP = 8192  # most points along a side
+_MARGIN = 1.02  # least number of points over twice the waves along a side
 _ROUNDING = 1e-13  # rounding error of the Fourier transform, over the r.m.s. height
 
 
@@ -140,6 +140,6 @@ class SpectrumAsperities(Source):
         return self.limited_to(1).ensemble(0, 0)
 
     def extremes(self, chance: float) -> Ensemble:
-        """Return asperities of a small map, as high as an asperity is with this chance."""
+        """Return asperities of a small map, of the height that one exceeds with this chance."""
         usual = self._usual
         return replace(usual, height=np.full(usual.height.size, self.summits.height_exceeded(chance)))

@@ -18,15 +18,15 @@ from roughmdr.numerics.jit import njit
 MAX_ELONGATION = 0.9
 """Largest q of an ellipse, half the logarithm of the ratio of its axes: a longer ridge is more than one contact."""
 MAX_DRIFT = 0.2
-"""How far the centre of a contact may lie from the summit [wavelength]: farther away it is another hill's."""
+"""Largest distance of the centre of a contact from the summit [wavelength]: farther away it belongs to another hill."""
 _ANGLES = 12
 _NODES, _WEIGHTS = unit_gauss(5)
 _RINGS = np.sqrt((1.0 - _NODES) * (1.0 + _NODES))  # radii [1] of rings with equal shares of the load of a punch
 _SWEEPS = 2
 _FIRST_STEPS = np.array([0.2, 0.2, 0.15, 0.15])
 
-# What describes an ellipse of one stiffness: elongation times cosine and sine of twice the angle of its long axis, and
-# the place of its centre over its radius.
+# Numbers that describe an ellipse of given stiffness: elongation times cosine and sine of twice the angle of its long
+# axis, and the position of its centre over its radius.
 PARAMETERS = 4
 
 

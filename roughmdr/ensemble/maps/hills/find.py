@@ -25,11 +25,11 @@ here, as the sizes below were tuned with it (``pipelines/hills.py``)."""
 SCALES = 20
 """Default number of contact radii in the table of a hill: each is 1.18 times the one before."""
 SMALLEST, LARGEST = 0.04, 1.0
-"""The first and the last of them, in wavelengths."""
+"""The first and the last contact radius [wavelength]."""
 MIDDLE = 0.14
-"""The contact radius at whose centre a hill stands for its neighbours [wavelength]: about where contacts meet."""
+"""Contact radius [wavelength] whose centre is the position of a hill for its neighbours: about where contacts meet."""
 APART = 0.05
-"""Centres of contacts of that size nearer than this [wavelength] are those of one hill with two tops."""
+"""Distance [wavelength] of the centres of two such contacts below which they are one hill with two tops."""
 
 
 class Hills(NamedTuple):
@@ -48,7 +48,7 @@ class Hills(NamedTuple):
 
 
 def wavelength(surface: HeightMap) -> float:
-    """Return the length of the waves that make the curvatures of a map [m]."""
+    """Return the length [m] of the waves on which the curvatures of a map depend."""
     slope = float(map_statistics(surface)["rms_slope"])
     return _WAVELENGTH * slope / math.sqrt(mean_square_laplacian(surface))
 
@@ -91,7 +91,7 @@ def find_hills(surface: HeightMap, summits: Ensemble, scales: int = SCALES) -> E
 
 
 def _repeated(at: Floats, height: Floats, apart: Floats, *, periodic: bool) -> NDArray[np.bool_]:
-    """Return which hills are those of a higher one near by; positions [hill, 2] and ``apart`` over the sides."""
+    """Return which hills coincide with a higher one; positions [hill, 2] and ``apart`` over the sides."""
     from scipy.spatial import cKDTree
 
     box = 1.0 / apart
@@ -106,7 +106,7 @@ def _repeated(at: Floats, height: Floats, apart: Floats, *, periodic: bool) -> N
 
 
 def _attributes(surface: HeightMap, length: float, share: Floats) -> dict[str, float | int | str]:
-    """Return what is known of all hills of a map, by the names of attributes."""
+    """Return the statistics of the hills of a map, by the names of attributes."""
     points = length / max(surface.dx, surface.dy)
     side_x, side_y = (n * spacing for n, spacing in zip(surface.height.shape, (surface.dx, surface.dy), strict=True))
     return {

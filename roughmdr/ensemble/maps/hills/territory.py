@@ -1,7 +1,7 @@
 """The surface of one hill: the map about its summit, where each rise beyond a valley is turned into a fall.
 
 Heights between the points of the map are those of its cubic spline. Along rays from the summit the surface must fall:
-from where it rises the territory of a neighbour begins, and so much and as much again is taken off.
+where it rises, the territory of a neighbour begins, and twice the rise is subtracted.
 """
 
 import math
@@ -53,7 +53,7 @@ class Territory(NamedTuple):
 
 @_inlined
 def _wrapped(index: int, size: int, periodic: bool) -> int:
-    """Return the point of the map that stands for one beyond its edges: that of the next period, or mirrored."""
+    """Return the point of the map for one beyond its edges: that of the next period, or the mirrored one."""
     if periodic:
         return index % size
     if size == 1:
@@ -76,7 +76,7 @@ def _basis(u: float) -> tuple[float, float, float, float]:
 
 @_inlined
 def map_height(spline: Spline, row: float, column: float) -> float:
-    """Return the height of the map [m] at a place between its points."""
+    """Return the height of the map [m] between its points."""
     c, periodic = spline.coefficients, spline.periodic
     nx, ny = c.shape
     i, j = math.floor(row), math.floor(column)
@@ -98,13 +98,13 @@ def map_height(spline: Spline, row: float, column: float) -> float:
 
 @_inlined
 def raw_height(hill: Territory, x: float, y: float) -> float:
-    """Return the height of the map [m] at a place [wavelength] from the summit."""
+    """Return the height of the map [m] at a position [wavelength] from the summit."""
     return map_height(hill.map, hill.row + x / hill.map.spacing_x, hill.column + y / hill.map.spacing_y)
 
 
 @njit
 def top_of(hill: Territory) -> tuple[float, float]:
-    """Return the place of the summit [wavelength], from where that of the paraboloid through its points is."""
+    """Return the position of the summit [wavelength], relative to the top of the paraboloid through its points."""
     x = y = 0.0
     for _ in range(_CLIMBS):
         for axis in range(2):
@@ -123,7 +123,7 @@ def top_of(hill: Territory) -> tuple[float, float]:
 
 @njit
 def explore(hill: Territory) -> None:
-    """Fill in what is taken off along the rays."""
+    """Fill in the height that is taken off along the rays."""
     step, nearest = REACH / STEPS, REACH
     for ray in range(RAYS):
         angle = 2.0 * math.pi * ray / RAYS
@@ -142,7 +142,7 @@ def explore(hill: Territory) -> None:
 
 @_inlined
 def height(hill: Territory, x: float, y: float) -> float:
-    """Return the height of the hill [m] at a place [wavelength] from its summit."""
+    """Return the height of the hill [m] at a position [wavelength] from its summit."""
     raw, r = raw_height(hill, x, y), math.sqrt(x * x + y * y)
     if r <= hill.nearest_rise[0]:
         return raw
