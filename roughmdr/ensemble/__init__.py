@@ -28,8 +28,17 @@ if TYPE_CHECKING:
 
 _AnySource = AnyRandomAsperities | NayakAsperities | SpectrumAsperities | SurfaceAsperities | FileAsperities
 Asperities = Annotated[_AnySource, Field(discriminator="source")]
+SOURCES: dict[str, type[Source]] = {
+    "random": RandomAsperities,
+    "nayak": NayakAsperities,
+    "spectrum": SpectrumAsperities,
+    "surface": SurfaceAsperities,
+    "file": FileAsperities,
+}
+"""The sources by their names."""
 
 __all__ = [
+    "SOURCES",
     "Asperities",
     "Ensemble",
     "NayakAsperities",

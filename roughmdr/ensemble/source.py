@@ -24,6 +24,9 @@ class Source(Section):
     of_surface: ClassVar[bool] = False
     """Whether the asperities are the summits of a continuous surface."""
 
+    papers: ClassVar[dict[str, str]] = {}
+    """What each paper on such summits is cited for, by its key in report/papers.bib."""
+
     source: str
 
     @property

@@ -9,6 +9,7 @@ from roughmdr.schema.material import MaterialArguments
 
 Model = Literal["jkr", "dugdale"]
 AskedModel = Literal[Model, "auto"]
+PAPERS = {"jkr": ("Johnson1971",), "dugdale": ("Maugis1992", "Dugdale1960")}  # by model: keys in report/papers.bib
 DEFAULT_ERROR = 0.01  # default error of the force of "auto", over the largest force
 
 

@@ -1,16 +1,17 @@
 """The papers behind a result or a scene: those of the models, surfaces and programs that it uses, and no others."""
 
 import os
-from collections.abc import Iterator
+import re
+from functools import cache
+from importlib.resources import files
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from roughmdr.ensemble import SOURCES
 from roughmdr.fitting.stored import given_fit
-from roughmdr.report import citations as papers
-from roughmdr.report.citations import Paper
-from roughmdr.report.citations_of_stages import OF_STAGES
+from roughmdr.kernels.adhesion import PAPERS
 from roughmdr.result.given import given_result
 from roughmdr.result.view import ResultView
 from roughmdr.scene import Scene, read
@@ -18,15 +19,16 @@ from roughmdr.schema.keywords import named_keywords
 from roughmdr.schema.quantities import adheres
 from roughmdr.schema.toml_text import parse_toml
 from roughmdr.schema.wording import printable
+from roughmdr.shapes import SHAPES
 from roughmdr.stages import STAGES, stages_in
 
 if TYPE_CHECKING:
     import xarray as xr
 
-_ROUND = ("paraboloid", "sphere")
-_FLAT = ("flat_punch", "truncated_cone", "truncated_paraboloid")
 _PROGRAM = "roughmdr"
-_NAMES = {"“": "``", "”": "''", "ß": "{\\ss}", "ä": '{\\"a}', "ö": '{\\"o}', "ü": '{\\"u}'}
+_SOFTWARE = ("Harris2020", "Lam2015", "Virtanen2020", "Hoyer2017", "Rocklin2015")
+_LETTERS = {"``": "“", "''": "”", "{\\ss}": "ß", '{\\"a}': "ä", '{\\"o}': "ö", '{\\"u}': "ü", "--": "-"}
+"""Letters to read, by how papers.bib spells them."""
 
 
 @named_keywords
@@ -75,17 +77,17 @@ def cite(target: "str | Path | xr.Dataset | Scene", *, bibtex: bool = False) -> 
 
 def describe_papers(scene: str, result: ResultView | None, *, bibtex: bool) -> str:
     """Return that text of a scene, as TOML, and of its ``result`` where there is one."""
-    used = _Used.of(scene, result)
-    told = [*_papers(used), *(("software", paper) for paper in papers.SOFTWARE.values())]
+    entries, cited = _entries(), _cited(_Used.of(scene, result))
+    keys = sorted(cited, key=list(entries).index)
     version = "" if result is None else printable(str(result.attrs["source"])).removeprefix(f"{_PROGRAM} ")
     if bibtex:
-        stated = f",\n  version = {{{_escaped(version)}}}" if version else ""
+        stated = f",\n  version = {{{version}}}" if version else ""
         program = f"@misc{{{_PROGRAM},\n  title = {{{_PROGRAM}}}{stated},\n  howpublished = {{Software}}\n}}"
-        return "\n\n".join([program, *(_bibtex(paper) for _, paper in told)])
+        return "\n\n".join([program, *(entries[key] for key in keys)])
     lines, before = [f"{'program':<12} {_PROGRAM} {version}".rstrip()], ""
-    for reason, paper in told:
-        lines.append(f"{reason if reason != before else '':<12} {_line(paper)}")
-        before = reason
+    for key in keys:
+        lines.append(f"{cited[key] if cited[key] != before else '':<12} {_line(entries[key])}")
+        before = cited[key]
     return "\n".join(lines)
 
 
@@ -150,83 +152,52 @@ class _Used(NamedTuple):
         return self.result is None and "boundary_elements" in self.values("interaction.beyond")
 
 
-def _papers(used: _Used) -> Iterator[tuple[str, Paper]]:
-    """Yield what a paper is cited for, and the paper."""
-    yield from _of_contacts(used)
-    yield from _of_surfaces(used)
-    yield from _of_coupling(used)
-    variables = list(used.table.get("output", {}).get("variables", ()))
-    for stage in STAGES:
-        yield from ((reason, OF_STAGES[key]) for reason, key in stage.papers(used.table, variables))
-
-
-def _of_contacts(used: _Used) -> Iterator[tuple[str, Paper]]:
-    yield from (("mapping", paper) for paper in (papers.HESS, papers.POPOV_HESS))
-    yield "contact", papers.SNEDDON
-    if any(shape in _ROUND for shape in used.shapes):
-        yield "contact", papers.HERTZ
+def _cited(used: _Used) -> dict[str, str]:
+    """Return what each paper is cited for, by its key in papers.bib."""
+    cited = {"Hess2012": "mapping", "PopovHess2015": "mapping", "Sneddon1965": "contact"}
     models = used.adhesion_models
-    if "jkr" in models:
-        yield "adhesion", papers.JKR
-    if models and any(shape in _FLAT for shape in used.shapes):
-        yield "adhesion", papers.KENDALL
-    if "dugdale" in models:
-        yield from (("adhesion", paper) for paper in (papers.MAUGIS, papers.DUGDALE))
-    ranged = used.values("adhesion.strength") or used.values("adhesion.range")
-    if models and ranged:
-        yield "adhesion", papers.TABOR
-
-
-def _of_surfaces(used: _Used) -> Iterator[tuple[str, Paper]]:
+    for shape in (shape for name, shape in SHAPES.items() if name in used.shapes):
+        cited |= {key: reason for key, reason in shape.papers.items() if models or reason != "adhesion"}
+    for model in models:
+        cited |= dict.fromkeys(PAPERS.get(model, ()), "adhesion")
+    if models and (used.values("adhesion.strength") or used.values("adhesion.range")):
+        cited["Tabor1977"] = "adhesion"
     if not used.hills:
-        yield "roughness", papers.GREENWOOD_WILLIAMSON
-    if "nayak" in used.sources:
-        yield from (("roughness", paper) for paper in (papers.LONGUET_HIGGINS, papers.NAYAK))
-    if not used.hills and not {"nayak", "surface", "spectrum"}.isdisjoint(used.sources):
-        yield "roughness", papers.GREENWOOD
+        cited["Greenwood1966"] = "roughness"
+        for source in (source for name, source in SOURCES.items() if name in used.sources):
+            cited |= source.papers
     if used.values("asperities.hurst"):
-        yield "roughness", papers.PERSSON
-
-
-def _of_coupling(used: _Used) -> Iterator[tuple[str, Paper]]:
-    boundaries = used.values("interaction.boundary") or ["periodic"]
-    if "pairwise" in used.values("interaction.model") and "periodic" in boundaries:
-        yield "interaction", papers.EWALD
-    if "mean_field" in used.values("interaction.model"):
-        yield "interaction", papers.CIAVARELLA
+        cited["Persson2005"] = "roughness"
+    interactions, boundaries = used.values("interaction.model"), used.values("interaction.boundary") or ["periodic"]
+    if "pairwise" in interactions and "periodic" in boundaries:
+        cited["Ewald1921"] = "interaction"
+    if "mean_field" in interactions:
+        cited["Ciavarella2008"] = "interaction"
     if used.grid:
-        yield "elements", papers.POLONSKY
+        cited["Polonsky1999"] = "elements"
         if "periodic" in boundaries:
-            yield "elements", papers.STANLEY_KATO
+            cited["Stanley1997"] = "elements"
         if "free" in boundaries or ("surface" in used.sources and "interaction" not in used.table):
-            yield "elements", papers.LOVE
+            cited["Love1929"] = "elements"
+    for stage in STAGES:
+        cited |= stage.cites(used.table, list(used.table.get("output", {}).get("variables", ())))
+    return cited | dict.fromkeys(_SOFTWARE, "software")
 
 
-def _line(paper: Paper) -> str:
-    """Return a paper as one line to read."""
-    names = ["and others" if name == "others" else name for name in paper.authors]
-    authors = ", ".join(names).replace(", and others", " and others")
-    where = " ".join(part for part in (paper.venue, paper.volume, f"({paper.year})", paper.pages) if part)
-    return f"{authors}. {paper.title}. {where}." + (f" doi:{paper.doi}" if paper.doi else "")
+@cache
+def _entries() -> dict[str, str]:
+    """Return the entries of papers.bib by their keys."""
+    text = files("roughmdr.report").joinpath("papers.bib").read_text("ascii")
+    return {entry[1]: entry[0] for entry in re.finditer(r"^@\w+\{(\w+),$.*?^\}$", text, flags=re.DOTALL | re.MULTILINE)}
 
 
-def _bibtex(paper: Paper) -> str:
-    """Return a paper as an entry of BibTeX."""
-    venue = {"article": "journal", "book": "publisher", "inproceedings": "booktitle"}[paper.kind]
-    fields = {
-        "author": " and ".join(paper.authors),
-        "title": f"{{{paper.title}}}",
-        venue: paper.venue,
-        "volume": paper.volume,
-        "pages": paper.pages.replace("-", "--"),
-        "year": str(paper.year),
-        "doi": paper.doi,
-    }
-    lines = [f"  {name} = {{{_escaped(value)}}}" for name, value in fields.items() if value]
-    return f"@{paper.kind}{{{paper.key},\n" + ",\n".join(lines) + "\n}"
-
-
-def _escaped(text: str) -> str:
-    for letter, spelt in _NAMES.items():
-        text = text.replace(letter, spelt)
-    return text
+def _line(entry: str) -> str:
+    """Return an entry as one line to read."""
+    for spelt, letter in _LETTERS.items():
+        entry = entry.replace(spelt, letter)
+    fields = dict(re.findall(r"^  (\w+) = \{+(.*?)\}+,?$", entry, flags=re.MULTILINE))
+    authors = ", ".join(fields["author"].split(" and ")).replace(", others", " and others")
+    venue = next(fields[name] for name in ("journal", "booktitle", "publisher") if name in fields)
+    parts = (venue, fields.get("volume"), f"({fields['year']})", fields.get("pages"))
+    doi = f" doi:{fields['doi']}" if "doi" in fields else ""
+    return f"{authors}. {fields['title']}. {' '.join(filter(None, parts))}.{doi}"

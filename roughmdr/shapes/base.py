@@ -44,6 +44,8 @@ class Shape(ABC):
     corner: ClassVar[bool] = False  # g' jumps to infinity, at the edge of a flat or of a blunter tip
     body_radius: ClassVar[tuple[str, ...]] = ()
     """The parameters whose sum is the radius where the body that the profile stands for ends."""
+    papers: ClassVar[Mapping[str, str]] = {}
+    """What each paper is cited for, "contact" or "adhesion", by its key in report/papers.bib."""
 
     def __new__(cls, *_: Any, **given: Any) -> Self:
         """Raise TypeError where a keyword is no parameter of the shape."""

@@ -29,6 +29,7 @@ class FlatPunch(Shape):
     radius: float
 
     name = "flat_punch"
+    papers: ClassVar[dict[str, str]] = {"Kendall1971": "adhesion"}
     units: ClassVar[dict[str, str]] = {"radius": "m"}
     pinned = True
     flat = True
@@ -87,6 +88,7 @@ class TruncatedCone(ProfileShape):
     flat_radius: float
 
     name = "truncated_cone"
+    papers: ClassVar[dict[str, str]] = {"Kendall1971": "adhesion"}
     similar = True
     units: ClassVar[dict[str, str]] = {"slope": "1", "flat_radius": "m"}
     profile = _Truncated(
@@ -135,6 +137,7 @@ class TruncatedParaboloid(ProfileShape):
     flat_radius: float
 
     name = "truncated_paraboloid"
+    papers: ClassVar[dict[str, str]] = {"Kendall1971": "adhesion"}
     similar = True
     units: ClassVar[dict[str, str]] = {"radius": "m", "flat_radius": "m"}
     body_radius = ("radius",)

@@ -40,6 +40,7 @@ class Paraboloid(_Power):
     radius: float
 
     name = "paraboloid"
+    papers: ClassVar[dict[str, str]] = {"Hertz1882": "contact"}
     units: ClassVar[dict[str, str]] = {"radius": "m"}
     body_radius = ("radius",)
 

@@ -49,6 +49,7 @@ class Sphere(ProfileShape):
     radius: float
 
     name = "sphere"
+    papers: ClassVar[dict[str, str]] = {"Hertz1882": "contact"}
     similar = True
     units: ClassVar[dict[str, str]] = {"radius": "m"}
     body_radius = ("radius",)

@@ -1,7 +1,7 @@
 """[conduction]: how the bodies conduct heat and electricity, and the conductances of their contacts."""
 
 import math
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 
 import numpy as np
@@ -47,6 +47,7 @@ class Conduction(Stage):
         "output": {"variables": ["force", "thermal_conductance"]},
     }
     own_variables = tuple(CONDUCTANCES)
+    papers: ClassVar[Mapping[str, str]] = {"Holm1967": "conductance", "Barber2003": "conductance"}
 
     conductivity: _Conductivity | None = None
     counter_conductivity: _Conductivity | None = None
@@ -120,10 +121,9 @@ class Conduction(Stage):
         return found
 
     @classmethod
-    def papers(cls, table: Mapping[str, Any], variables: list[str]) -> Iterator[tuple[str, str]]:
-        """Yield the papers on the conductance of contacts."""
-        if not {RADIUS, *CONDUCTANCES}.isdisjoint(variables):
-            yield from (("conductance", key) for key in ("Holm1967", "Barber2003"))
+    def cites(cls, table: Mapping[str, Any], variables: list[str]) -> Mapping[str, str]:
+        """Return the papers where a conductance is asked for."""
+        return {} if {RADIUS, *CONDUCTANCES}.isdisjoint(variables) else cls.papers
 
 
 def of_contacts(variables: Iterable[str]) -> list[str]:

@@ -1,6 +1,6 @@
 """[nominal]: the curved body that presses the rough layer, in place of a flat."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 
 from pydantic import BeforeValidator, create_model, model_validator
@@ -52,6 +52,7 @@ class _Nominal(Stage):
     flat = False
     unlike = "a curved body"
     most_foreseen = 8
+    papers: ClassVar[Mapping[str, str]] = {"Greenwood1967": "curvature"}
 
     shape: Literal[tuple(_BODIES)] = "paraboloid"  # type: ignore[valid-type]
     error: Annotated[float, BeforeValidator(Quantity(DIMENSIONLESS, at_least=_LEAST_ERROR, at_most=_MOST_ERROR))] = (
@@ -150,12 +151,6 @@ class _Nominal(Stage):
     def attributes(self) -> dict[str, str]:
         """Return the shape of the body."""
         return {self.key: self.shape}
-
-    @classmethod
-    def papers(cls, table: Mapping[str, Any], variables: list[str]) -> Iterator[tuple[str, str]]:
-        """Yield the paper on rough curved bodies."""
-        if cls.is_in(table):
-            yield "curvature", "Greenwood1967"
 
 
 def _listed(shape: type[Shape]) -> str:

@@ -74,6 +74,8 @@ class Stage(Section):
     """Name of the part of physics that a scene without the section leaves out."""
     noted: ClassVar[str] = ""
     """Attribute of results, and name in summaries, of ``notes``; one of ``RESULT_ATTRIBUTES``."""
+    papers: ClassVar[Mapping[str, str]] = {}
+    """What each paper is cited for, by its key in report/papers.bib."""
 
     # the scene
 
@@ -180,6 +182,6 @@ class Stage(Section):
         yield from ()
 
     @classmethod
-    def papers(cls, table: Mapping[str, Any], variables: list[str]) -> Iterator[tuple[str, str]]:
-        """Yield what a paper is cited for and its key in ``report.citations_of_stages``; for variables asked."""
-        yield from ()
+    def cites(cls, table: Mapping[str, Any], variables: list[str]) -> Mapping[str, str]:
+        """Return those of ``papers`` that a scene, as a table, rests on, given the variables asked for."""
+        return cls.papers if cls.is_in(table) else {}

@@ -49,6 +49,9 @@ class Tangential(Stage):
     fitted = False
     own_variables = tuple(TANGENTIAL_VARIABLES)
     noted = "slip"
+    papers: ClassVar[Mapping[str, str]] = dict.fromkeys(
+        ("Cattaneo1938", "Mindlin1949", "Jaeger1995", "Masing1926", "MindlinDeresiewicz1953"), "slip"
+    )
 
     friction: Annotated[float, BeforeValidator(Quantity("1", above=0.0))] | None = None
     stiffness_ratio: (
@@ -182,13 +185,11 @@ class Tangential(Stage):
         return law._replace(variables=law.variables | sticking, tangential_error=error).only(names)
 
     @classmethod
-    def papers(cls, table: Mapping[str, Any], variables: list[str]) -> Iterator[tuple[str, str]]:
-        """Yield the papers on partial slip, or on the stiffness of contacts that stick."""
+    def cites(cls, table: Mapping[str, Any], variables: list[str]) -> Mapping[str, str]:
+        """Return the papers on partial slip, or that on the stiffness of contacts that stick."""
         if "lateral" in table.get("path", {}):
-            keys = "Cattaneo1938", "Mindlin1949", "Jaeger1995", "Masing1926", "MindlinDeresiewicz1953"
-            yield from (("slip", key) for key in keys)
-        elif _STICKING in variables:
-            yield "slip", "Mindlin1949"
+            return cls.papers
+        return {"Mindlin1949": cls.papers["Mindlin1949"]} if _STICKING in variables else {}
 
 
 def _asked(scene: Given) -> str:

@@ -59,6 +59,7 @@ class Viscoelastic(Stage):
         "output": {"variables": ["force", "contact_area"]},
     }
     unlike = "bodies that relax"
+    papers: ClassVar[Mapping[str, str]] = {"Lee1960": "viscoelastic", "Ting1966": "viscoelastic"}
     more_separations = 5000  # points of the integral over the time, where curves have kinks
 
     relaxation: Annotated[list[RelaxationTerm], Field(min_length=1)]
@@ -148,12 +149,6 @@ class Viscoelastic(Stage):
             return viscoelastic_law(elastic, path.separation, names, body, clear=clear, nominal_area=area)
 
         return law
-
-    @classmethod
-    def papers(cls, table: Mapping[str, Any], variables: list[str]) -> Iterator[tuple[str, str]]:
-        """Yield the papers on contacts of bodies that relax."""
-        if cls.is_in(table):
-            yield from (("viscoelastic", key) for key in ("Lee1960", "Ting1966"))
 
 
 def _check_order(separation: "Floats") -> None:

@@ -22,6 +22,7 @@ KEPT = (
     "roughmdr/__init__.py",
     "roughmdr/py.typed",
     "roughmdr/starter.toml",
+    "roughmdr/report/papers.bib",
 )
 
 
@@ -59,7 +60,7 @@ def test_a_release_is_tagged_and_built(clone: Path) -> None:
     assert 'version = "7.8.9"' in tagged.stdout
     assert (clone / "dist" / "roughmdr-7.8.9.tar.gz").exists()
     files = zipfile.ZipFile(clone / "dist" / "roughmdr-7.8.9-py3-none-any.whl").namelist()
-    assert {"roughmdr/py.typed", "roughmdr/starter.toml"} <= set(files)
+    assert {"roughmdr/py.typed", "roughmdr/starter.toml", "roughmdr/report/papers.bib"} <= set(files)
     assert any(name.endswith("licenses/LICENSE") for name in files)
 
 

@@ -6,7 +6,6 @@ import pytest
 from scenes import scene
 
 import roughmdr as rm
-from roughmdr.report.citations_of_stages import OF_STAGES
 from roughmdr.report.result_document import result_table
 from roughmdr.result.view import ResultView
 from roughmdr.scene import Scene, read
@@ -29,7 +28,7 @@ def test_what_a_stage_declares_is_there(stage: type[Stage]) -> None:
     section = read(table).stage(stage)
     assert section is not None
     assert section.attributes().keys() <= RESULT_ATTRIBUTES.keys()
-    assert {key for _, key in stage.papers(table, list(OUTPUT_VARIABLES))} <= OF_STAGES.keys()
+    assert stage.cites(table, list(OUTPUT_VARIABLES)) == stage.papers
     assert stages_in(table) == [stage]
     assert section.coarse().model_fields_set >= section.model_fields_set - {"error"}
 

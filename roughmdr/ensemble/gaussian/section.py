@@ -45,6 +45,7 @@ class NayakAsperities(PatchSource):
     """
 
     of_surface: ClassVar[bool] = True
+    papers: ClassVar[dict[str, str]] = dict.fromkeys(("LonguetHiggins1957", "Nayak1971", "Greenwood2006"), "roughness")
     has_usual_distance: ClassVar[bool] = True
 
     source: Literal["nayak"]

@@ -40,6 +40,7 @@ class SurfaceAsperities(FromFile):
     """
 
     of_surface: ClassVar[bool] = True
+    papers: ClassVar[dict[str, str]] = {"Greenwood2006": "roughness"}
 
     source: Literal["surface"]
     model: Model = "summits"

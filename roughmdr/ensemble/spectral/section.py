@@ -34,6 +34,7 @@ class SpectrumAsperities(Source):
     """
 
     of_surface: ClassVar[bool] = True
+    papers: ClassVar[dict[str, str]] = {"Greenwood2006": "roughness"}
 
     source: Literal["spectrum"]
     model: Model = "hills"
