@@ -11,10 +11,12 @@ from types import ModuleType
 
 import numpy as np
 import pytest
+from exports import of_csv
 from forms import large
-from scenes import ensemble
+from scenes import ensemble, scene
 
 import roughmdr as rm
+from roughmdr.report.export import formats
 from roughmdr.shapes import SHAPES
 
 S, R, E, W = 0.05, 3e-5, 4e6, 0.02
@@ -59,6 +61,24 @@ def test_the_shape_of_the_guide_works(conoid: ModuleType) -> None:
         for s, d in ((S, 1e-6), (2 * S, 0.9e-6))
     ]
     assert float(law.force[1]) == pytest.approx(sum(float(one.force) for one in alone), rel=1e-12)
+
+
+def test_the_export_format_of_the_guide_works(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (entry,) = re.findall(
+        r"```python\n(.*?)```", GUIDE.split("## A new export format\n")[1].split("\n## ")[0], flags=re.DOTALL
+    )
+    monkeypatch.setitem(formats.FORMATS, "lsdyna", eval(entry, vars(formats)))
+    path = {"separation": {"start": "clear", "stop": "0.5 sigma", "steps": 120}}
+    law = rm.run(scene(adhesion=None, path=path, batch={"estimator": "expected"}))
+    asked = {"error": 5e-3, "units": "mm,N,MPa"}
+    rm.export(law, tmp_path / "law.k", to="lsdyna", **asked)
+    rm.export(law, tmp_path / "law.csv", to="csv", **asked)
+    lines = [line for line in (tmp_path / "law.k").read_text("ascii").splitlines() if line[0] != "$"]
+    assert lines[:2] == ["*DEFINE_CURVE", "1"]
+    numbers = [[float(line[:20]), float(line[20:])] for line in lines[2:]]
+    np.testing.assert_allclose(numbers, of_csv(tmp_path / "law.csv").iloc[:, :2], rtol=1e-12)
+    with pytest.raises(rm.StoreError, match="lsdyna has no table of quantity 'area'"):
+        rm.export(law, tmp_path / "law.k", to="lsdyna", quantity="area")
 
 
 _USE = """

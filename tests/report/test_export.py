@@ -317,6 +317,15 @@ def test_an_export_gives_way_to_an_export_and_nothing_else_does(files: Path, tmp
     assert len(of_csv(tmp_path / "notes.csv")) > 5
 
 
+def test_moose_reads_each_point_once_of_few_points_too(files: Path) -> None:
+    file = with_curve(files / "hertz.nc", files / "few.nc", "thermal_conductance", 0.95, "W K-1")
+    asked = {"quantity": "conductance", "error": 0.03}
+    _, x, y = of_moose(exported(file, "few.i", to="moose", **asked))
+    assert x.size < 6
+    table = of_csv(exported(file, "few.csv", to="csv", **asked))
+    np.testing.assert_array_equal([x, y], [table.iloc[:, 0], table.iloc[:, 1]])
+
+
 def test_nothing_in_a_title_becomes_a_line_of_the_table(files: Path) -> None:
     with xr.open_dataset(files / "hertz.nc") as data:
         made = data.load()

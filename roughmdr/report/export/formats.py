@@ -1,16 +1,23 @@
-"""The formats of exported files, each declared once."""
+"""The formats of exported files, each declared once: finite-element codes read two columns, CSV and JSON hold all.
 
-import math
-from collections.abc import Callable, Mapping
+Options of Abaqus and CalculiX are to be included under *SURFACE INTERACTION. Real constants of contact elements of
+Ansys take the name of an array of type TABLE as %NAME%; its primary variable GAP is positive in penetration, PRESSURE
+in compression (Mechanical APDL Basic Analysis Guide, tabular real constants).
+"""
+
+from collections.abc import Mapping
 from typing import NamedTuple
 
-from roughmdr.report.export.document import Document
-from roughmdr.report.export.syntax import write_abaqus, write_ansys, write_calculix, write_csv, write_json, write_moose
 
-_INCLUDED = "for *INCLUDE under a *SURFACE INTERACTION"
-_AS_CALLED = "a function of what it is called with, by default the time; constant beyond its ends"
-_BY_NAME = "a table that real constants of contact elements take as %NAME%"
-_ALL = dict.fromkeys(("pressure", "conductance", "area", "tangential", "nodes"), "")
+class Template(NamedTuple):
+    """Lines of a table in the syntax of a code; in braces stand the fields that ``text_of`` fills in."""
+
+    head: str
+    """Once: {value}, the name of the variable; {count} of points; {xs} and {ys}, all numbers; {columns}, all names with
+    units; of friction {friction}, {stick}, the stiffness at the largest pressure, and {slip}, the elastic slip there.
+    """
+    row: str = ""
+    """For each point: {x}, the argument; {y}, the value; {number}, from 1; {all} numbers."""
 
 
 class Format(NamedTuple):
@@ -18,15 +25,39 @@ class Format(NamedTuple):
 
     name: str
     endings: tuple[str, ...]
+    comment: str
+    """Start of the lines of its header; empty for JSON, whose object holds the header."""
     quantities: Mapping[str, str]
     """Quantities that it can hold, each with a note for the header on how the code takes it."""
-    write: Callable[[Document], str]
+    templates: Mapping[str, Template]
+    """By the name of the value, or "" for any."""
     with_tension: bool = True
     """Whether its tables go on to tension."""
-    most_lines: Mapping[str, float] = {}
+    most_lines: Mapping[str, int] = {}
     """Lines that the code reads, of quantities where they are limited."""
     least_step: float = 0.0
     """Step of the overclosure, in units of the model, below which the code changes it."""
+
+
+_INCLUDED = "for *INCLUDE under a *SURFACE INTERACTION"
+_AS_CALLED = "a function of what it is called with, by default the time; constant beyond its ends"
+_BY_NAME = "a table that real constants of contact elements take as %NAME%"
+_ALL = dict.fromkeys(("pressure", "conductance", "area", "tangential", "nodes"), "")
+_PAIR = "{y:.12e}, {x:.12e}"  # numbers in the 20 characters that CalculiX reads
+_FUNCTION = """\
+[Functions]
+  [rough_layer_{value}]
+    type = PiecewiseLinear
+    x = '{xs}'
+    y = '{ys}'
+  []
+[]"""
+
+
+def _array(name: str, primary: str) -> Template:
+    """Return the template of an array of Ansys: index values in column 0, values in column 1."""
+    row = f"*SET,{name}({{number}},0),{{x:.15g}}\n*SET,{name}({{number}},1),{{y:.15g}}"
+    return Template(f"*DIM,{name},TABLE,{{count}},1,1,{primary}", row)
 
 
 FORMATS = {
@@ -35,18 +66,25 @@ FORMATS = {
         Format(
             "abaqus",
             (".inp",),
+            "**",
             {
                 "pressure": f"{_INCLUDED}; beyond the last line the last slope goes on",
                 "conductance": f"{_INCLUDED}; over the contact pressure",
                 "tangential": f"{_INCLUDED}; the elastic slip, friction times pressure over stiffness, is that at the "
                 "largest pressure",
             },
-            write_abaqus,
+            {
+                "pressure": Template("*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=TABULAR", _PAIR),
+                "thermal_conductance": Template("*GAP CONDUCTANCE, PRESSURE", _PAIR),
+                "electrical_conductance": Template("*GAP ELECTRICAL CONDUCTANCE, PRESSURE", _PAIR),
+                "tangential_stiffness": Template("*FRICTION, ELASTIC SLIP={slip:.12e}\n{friction:.12e}"),
+            },
             with_tension=False,
         ),
         Format(
             "calculix",
             (".inp",),
+            "**",
             {
                 "pressure": f"{_INCLUDED}; with *CONTACT PAIR, TYPE=NODE TO SURFACE, since version 2.20 reads no "
                 "pressure from tables with TYPE=SURFACE TO SURFACE; constant beyond the last line",
@@ -55,7 +93,11 @@ FORMATS = {
                 "over the contact pressure, constant beyond the last line",
                 "tangential": f"{_INCLUDED}; the stick slope is that at the largest pressure",
             },
-            write_calculix,
+            {
+                "pressure": Template("*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=TABULAR", _PAIR),
+                "thermal_conductance": Template("*GAP CONDUCTANCE", _PAIR),  # its argument is the pressure
+                "tangential_stiffness": Template("*FRICTION\n{friction:.12e}, {stick:.12e}"),
+            },
             with_tension=False,
             most_lines={"pressure": 200, "conductance": 20},
             least_step=1e-10,
@@ -63,27 +105,28 @@ FORMATS = {
         Format(
             "moose",
             (".i",),
+            "#",
             dict.fromkeys(("pressure", "conductance", "area", "tangential"), _AS_CALLED),
-            write_moose,
+            {"": Template(_FUNCTION)},
         ),
         Format(
             "ansys",
             (".inp", ".mac"),
+            "!",
             {
                 "pressure": f"{_BY_NAME}, GAP positive in penetration; contact elements take no pressure from a table: "
                 "it is for USERINTER, or for a stiffness made from it",
                 "conductance": f"{_BY_NAME}: TCC, or ECC of an electrical one, over the contact pressure",
             },
-            write_ansys,
+            {
+                "pressure": _array("ROUGH_PRES", "GAP"),
+                "thermal_conductance": _array("ROUGH_TCC", "PRESSURE"),
+                "electrical_conductance": _array("ROUGH_ECC", "PRESSURE"),
+            },
             with_tension=False,
         ),
-        Format("csv", (".csv",), _ALL, write_csv),
-        Format("json", (".json",), _ALL, write_json),
+        Format("csv", (".csv",), "#", _ALL, {"": Template("{columns}", "{all}")}),
+        Format("json", (".json",), "", _ALL, {}),
     )
 }
 """Formats by their names, as --to takes them."""
-
-
-def most_lines_of(chosen: Format, quantity: str) -> float:
-    """Return the number of lines that a code reads of a quantity; inf where there is no limit."""
-    return chosen.most_lines.get(quantity, math.inf)

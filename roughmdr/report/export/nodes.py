@@ -6,8 +6,8 @@ from pathlib import Path
 from roughmdr.errors import StoreError
 from roughmdr.expected.few_asperities import FewAsperities, few_asperities
 from roughmdr.pictures.overlay import plan_of_result
-from roughmdr.report.export.document import Column, Document
 from roughmdr.report.export.header import model_lines, origin_lines
+from roughmdr.report.export.text import Column, Document
 from roughmdr.report.export.units import UnitSystem
 from roughmdr.result.select import cell_of, select
 from roughmdr.result.view import ResultView
@@ -54,7 +54,7 @@ def nodes_document(
         unit = units.of(SHAPES[scene.asperities.shape_name].units[name])
         columns.append(Column(name, unit.name, values / unit.size))
     header = dict(origin_lines(cell, words)) | dict(_lines(scene, found, units)) | dict(model_lines(cell))
-    return Document("nodes", "nodes", header, tuple(columns))
+    return Document("nodes", header, tuple(columns))
 
 
 def _lines(scene: Scene, found: FewAsperities, units: UnitSystem) -> Iterator[tuple[str, str]]:

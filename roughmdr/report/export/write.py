@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from roughmdr.errors import LimitWarning, StoreError, level_outside
-from roughmdr.report.export.document import Column, Document
-from roughmdr.report.export.formats import FORMATS, Format, most_lines_of
+from roughmdr.report.export.formats import FORMATS, Format
 from roughmdr.report.export.header import origin_lines, table_lines
 from roughmdr.report.export.law import QUANTITIES, Quantity, law_of
 from roughmdr.report.export.table import MOST_ERROR, Table, table_of
+from roughmdr.report.export.text import Column, Document, text_of
 from roughmdr.report.export.units import UnitSystem
 from roughmdr.result.given import given_result
 from roughmdr.result.select import cell_of, select
@@ -123,7 +123,7 @@ def check_export(path: Path, file: Path | None, asked: Export, *, fresh: bool) -
 
 def write(document: Document, path: Path, asked: Export) -> None:
     """Write a document in the syntax of its format, whole or not at all."""
-    text = asked.format.write(document)
+    text = text_of(document, asked.format)
     with replace_atomically(path) as temporary:
         temporary.write_text(text, encoding="utf-8")
 
@@ -154,8 +154,7 @@ def document_of(result: ResultView, file: Path | None, asked: Export) -> tuple[D
     if note := asked.format.quantities[asked.quantity]:
         header["use"] = note
     friction = _friction(result, asked) if quantity.name == "tangential" else None
-    document = Document(quantity.name, law.source.variable, header, columns, friction)
-    return document, table.warnings
+    return Document(quantity.name, header, columns, friction), table.warnings
 
 
 def _friction(result: ResultView, asked: Export) -> float | None:
@@ -169,10 +168,10 @@ def _friction(result: ResultView, asked: Export) -> float | None:
 
 def _check_fit(table: Table, quantity: Quantity, units: UnitSystem, asked: Export) -> None:
     """Raise StoreError where the code does not read a table as it is."""
-    most, lines = most_lines_of(asked.format, asked.quantity), table.law.overclosure.size
-    if lines > most:
+    most, lines = asked.format.most_lines.get(asked.quantity), table.law.overclosure.size
+    if most is not None and lines > most:
         raise StoreError(
-            f"error is {asked.error:g}, which takes {lines} points, and {asked.to} reads {most:g} at most: ask for an "
+            f"error is {asked.error:g}, which takes {lines} points, and {asked.to} reads {most} at most: ask for an "
             f"error of about {asked.error * (lines / most) ** 2:.2g}"
         )
     if quantity.over_pressure:
