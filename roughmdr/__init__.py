@@ -31,8 +31,8 @@ if TYPE_CHECKING:
     from roughmdr.pictures.plot import plot
     from roughmdr.report.cite import cite
     from roughmdr.report.export.write import export
-    from roughmdr.report.info import info
     from roughmdr.report.page import write_report
+    from roughmdr.report.summary import info
     from roughmdr.runner.run import run
     from roughmdr.scene import Scene
     from roughmdr.schema.material import effective_modulus
@@ -73,7 +73,7 @@ _ROOMS = {
     "fitting.fit": ("fit",),
     "report.cite": ("cite",),
     "report.export.write": ("export",),
-    "report.info": ("info",),
+    "report.summary": ("info",),
     "report.page": ("write_report",),
     "pictures.plot": ("plot",),
     "runner.run": ("run",),

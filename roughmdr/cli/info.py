@@ -31,7 +31,7 @@ def info(ctx: click.Context, result: Path, cells: bool, as_json: bool) -> None:
         awaited = parts.is_dir() and not result.exists()
     if awaited:
         raise StoreError(f"{result}: is not written yet; what is finished is told by: roughmdr info {parts}")
-    from roughmdr.report.info import describe
+    from roughmdr.report.summary import describe
     from roughmdr.storage.result_file import is_fit
 
     if not as_json and is_fit(result):

@@ -19,7 +19,7 @@ def plan(ctx: click.Context, scene: Path, changes: tuple[str, ...], workers: int
 
     Prints the number of runs and tasks, time and memory, and what is left out and why. Nothing is computed.
     """
-    from roughmdr.report.summary import describe_plan
+    from roughmdr.report.plan import describe_plan, plan_table
     from roughmdr.scene import read
 
     validated = read(scene, changes)
@@ -30,8 +30,6 @@ def plan(ctx: click.Context, scene: Path, changes: tuple[str, ...], workers: int
     planned = make_plan(validated)
     cost, prospect = estimate(planned, workers), foresee_cells(planned)
     if as_json:
-        from roughmdr.report.plan_document import plan_table
-
         print_document(ctx, plan=plan_table(planned, cost, prospect, workers))
     else:
         print_text(describe_plan(planned, cost, prospect, workers))

@@ -19,11 +19,8 @@ def report(result: Path, output: Path, fresh: bool) -> None:
     It shows pictures, errors, scene, provenance, and what to cite, and needs no other file. A page that is there
     already is replaced, since RESULT writes it again.
     """
-    from roughmdr.report.page import check_page, page_of
-    from roughmdr.storage.files import replace_atomically
+    from roughmdr.report.page import check_page, write_page
 
     check_page(output, result, fresh=fresh)
-    data = read_warned(result)
-    with replace_atomically(output) as temporary:
-        temporary.write_text(page_of(data, result), encoding="utf-8")
+    write_page(read_warned(result), result, output)
     print_text(f"report       {click.format_filename(output)}")

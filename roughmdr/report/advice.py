@@ -1,6 +1,5 @@
 """Advice on a map: which of its summits, its hills and boundary elements to believe, and why."""
 
-from collections.abc import Iterator
 from typing import Any
 
 from roughmdr.ensemble.maps.resolution import MAX_HILLS_ERROR, MAX_SUMMITS_ERROR
@@ -16,8 +15,8 @@ _TOO_COARSE = 'asperities.model = "hills" tells whether it is too coarse for hil
 _TO_HILLS = 'take asperities.model = "hills" with [interaction] model = "pairwise"'
 
 
-def advice_lines(scene: str, resolution_error: float) -> Iterator[tuple[str, str]]:
-    """Yield the advice of a scene, as TOML, whose asperities are found on maps; nothing for others.
+def advice_on(scene: str, resolution_error: float) -> str:
+    """Return the advice on a scene, as TOML, whose asperities are found on maps; empty for others.
 
     ``resolution_error`` is that of the force by the resolution of the map [1]. The figures are measured
     (``pipelines/hills.py``, ``pipelines/adhesive_hills.py``).
@@ -25,23 +24,20 @@ def advice_lines(scene: str, resolution_error: float) -> Iterator[tuple[str, str
     table = parse_toml(scene)
     asperities = table.get("asperities", {})
     if not isinstance(asperities, dict) or asperities.get("source") not in _OF_MAPS:
-        return
+        return ""
     model = asperities.get("model", "summits" if asperities["source"] == "surface" else "hills")
     coupled = table.get("interaction", {}).get("model") == "pairwise"
     which = _which(table, model, coupled)
     if resolution_error <= (MAX_SUMMITS_ERROR if model == "summits" else MAX_HILLS_ERROR):
-        yield "advice", which
-        return
+        return which
     finer, useless = _finer(asperities), resolution_error > _USELESS
     if model == "summits":
         opening = "do not believe the summits; " if useless else ""
         coarse = f"{opening}the map is too coarse or noisy for its summits: {finer}"
-        advice = f"{coarse}; as far as it goes, {which}; {_TOO_COARSE}"
-    elif useless:
-        advice = f"believe neither hills nor boundary elements; the map is too coarse for both: {finer}"
-    else:
-        advice = f"the map is too coarse for hills and boundary elements alike: {finer}; as far as it goes, {which}"
-    yield "advice", advice
+        return f"{coarse}; as far as it goes, {which}; {_TOO_COARSE}"
+    if useless:
+        return f"believe neither hills nor boundary elements; the map is too coarse for both: {finer}"
+    return f"the map is too coarse for hills and boundary elements alike: {finer}; as far as it goes, {which}"
 
 
 def _finer(asperities: dict[str, Any]) -> str:

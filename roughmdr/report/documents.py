@@ -8,11 +8,12 @@ keys may be added without that.
 import json
 import math
 from collections.abc import Iterable, Mapping
-from typing import Any, TypedDict
+from typing import Any, TypedDict, cast
 
 import numpy as np
 
-from roughmdr.errors import Fault, SceneError
+from roughmdr.errors import SceneError
+from roughmdr.schema.wording import gathered
 
 FORMAT = 1
 
@@ -204,30 +205,21 @@ def document(
     **told: ResultTable | PlanTable | PartsTable | None,
 ) -> Document:
     """Return a document about what was ``told``: result, plan or parts, or none of them."""
-    made: Document = {
-        "format": FORMAT,
-        "command": command,
-        "exit_status": exit_status,
-        "faults": list(faults),
-        "warnings": list(warnings),
-        "result": None,
-        "plan": None,
-        "parts": None,
-    }
-    made.update(told)  # type: ignore[typeddict-item]
-    return made
+    made = {"format": FORMAT, "command": command, "exit_status": exit_status}
+    made |= {"faults": list(faults), "warnings": list(warnings), "result": None, "plan": None, "parts": None}
+    return cast("Document", made | told)
 
 
 def fault(message: str) -> FaultTable:
     """Return a fault of no key."""
-    return {"location": "", "key": "", "value": "", "message": message}
+    return FaultTable(location="", key="", value="", message=message)
 
 
 def faults_of(error: BaseException, message: str = "") -> list[FaultTable]:
     """Return the faults of an error: those of a scene one by one, else its message, or the one given."""
-    listed: tuple[Fault, ...] = error.faults if isinstance(error, SceneError) else ()
-    tables: list[FaultTable] = [
-        {"location": each.location, "key": each.key, "value": each.value, "message": each.message} for each in listed
+    listed = error.faults if isinstance(error, SceneError) else ()
+    tables = [
+        FaultTable(location=each.location, key=each.key, value=each.value, message=each.message) for each in listed
     ]
     return tables or [fault(message or str(error))]
 
@@ -250,12 +242,11 @@ def _plain(value: Any) -> Any:
 
 def paragraphs(lines: Iterable[tuple[str, str]]) -> dict[str, str]:
     """Return lines with names by their names, spaces as underscores; one without a name continues the one before."""
-    told: dict[str, str] = {}
-    current = ""
-    for name, text in lines:
-        current = name.replace(" ", "_") or current
-        told[current] = f"{told[current]}; {text.lstrip('; ')}" if current in told else text
-    return told
+    told = gathered(lines)
+    return {
+        name.replace(" ", "_"): "; ".join([first, *(each.lstrip("; ") for each in more)])
+        for name, (first, *more) in told.items()
+    }
 
 
 _TRUST = ("contact", "model_error", "trust")

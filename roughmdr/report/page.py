@@ -19,7 +19,7 @@ from roughmdr.report.summary import describe_cells, summary_lines
 from roughmdr.result.given import given_result
 from roughmdr.result.view import ResultView
 from roughmdr.schema.keywords import named_keywords
-from roughmdr.schema.wording import escape_controls
+from roughmdr.schema.wording import escape_controls, gathered
 from roughmdr.storage.files import check_ending, check_writable, replace_atomically
 from roughmdr.storage.result_file import check_same_kind
 
@@ -66,7 +66,12 @@ def write_report(result: "str | Path | xr.Dataset", out: str | Path, *, fresh: b
     data, file = given_result(result)
     path = Path(out)
     check_page(path, file, fresh=fresh)
-    text = page_of(data, file)
+    write_page(data, file, path)
+
+
+def write_page(result: ResultView, file: Path | None, path: Path) -> None:
+    """Write the page of a result that was read, from ``file`` or None; StoreError if no run was computed."""
+    text = page_of(result, file)
     with replace_atomically(path) as temporary:
         temporary.write_text(text, encoding="utf-8")
 
@@ -80,10 +85,7 @@ def check_page(path: Path, file: Path | None, *, fresh: bool) -> None:
 
 
 def page_of(result: ResultView, file: Path | None) -> str:
-    """Return the page of a result that was read, from ``file`` unless that is None.
-
-    StoreError if no run was computed.
-    """
+    """Return that page."""
     from importlib.resources import files
 
     from jinja2 import Environment
@@ -110,18 +112,11 @@ def page_of(result: ResultView, file: Path | None) -> str:
 
 def _summary(result: ResultView) -> Iterator[tuple[str, list[str]]]:
     """Yield the lines of the summary, those that go on under the name that they began with."""
-    lines: dict[str, list[str]] = {}
-    name = ""
-    for title, text in summary_lines(result):
-        name = title or name
-        if name not in _LEFT:
-            lines.setdefault(name, []).append(text)
-    for name, texts in lines.items():
+    for name, texts in gathered(summary_lines(result)).items():
         more = len(texts) - _MAX_LINES
-        yield (
-            name,
-            [*texts[:_MAX_LINES], f"... and {more} more lines, which roughmdr info prints"] if more > 0 else texts,
-        )
+        if name not in _LEFT:
+            rest = [f"... and {more} more lines, which roughmdr info prints"] if more > 0 else []
+            yield name, [*texts[:_MAX_LINES], *rest]
 
 
 def _figures(source: Drawable) -> Iterator[_Figure]:

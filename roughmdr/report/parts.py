@@ -1,7 +1,5 @@
 """The text and the table of ``roughmdr info OUT.nc.parts``: how far a batch is that is not over."""
 
-import numpy as np
-
 from roughmdr.batch.resume.kept import Kept, Progress, progress_of
 from roughmdr.report.documents import PartCellTable, PartsTable
 from roughmdr.report.result_document import swept_table
@@ -51,10 +49,8 @@ def parts_table(kept: Kept) -> PartsTable:
 
 def _cell(progress: Progress, number: int) -> PartCellTable:
     assert progress.plan is not None  # or there would be no cells
-    sizes = progress.plan.sizes
-    index = tuple(int(each) for each in np.unravel_index(number, tuple(sizes.values()))) if sizes else ()
     return {
-        "swept": swept_table(progress.plan.scene.sweep.coordinates(), sizes, index),
+        "swept": swept_table(progress.plan.scene.sweep.coordinates(), progress.plan.sizes, number),
         "done": progress.done[number],
         "failed": progress.failed[number],
         "total": progress.realizations if progress.total is not None else None,

@@ -7,7 +7,8 @@ from typing import cast
 import numpy as np
 
 from roughmdr.model_error.parts import PARTS
-from roughmdr.report.advice import advice_lines
+from roughmdr.report.advice import advice_on
+from roughmdr.report.contacts import sample_of_result
 from roughmdr.report.documents import (
     AccuracyTable,
     CellTable,
@@ -17,7 +18,6 @@ from roughmdr.report.documents import (
     paragraphs,
     trust_table,
 )
-from roughmdr.report.few_contacts import sample_of_result
 from roughmdr.report.summary import describe_failed, first_remark
 from roughmdr.result.trust import trust_of_result
 from roughmdr.result.view import ResultView, swept_values
@@ -39,13 +39,13 @@ def result_table(result: ResultView, file: Path | None, elapsed: float | None = 
         "steps": result.sizes["step"],
         "control": result.control,
         "variables": result.curves,
-        "cells": [_cell(result, cell) for cell in result.cells],
+        "cells": [_cell(result, number, cell) for number, cell in enumerate(result.cells)],
         "path": attrs.get("path", "").splitlines(),
         "lattice": attrs.get("lattice", "").splitlines(),
         "map": attrs.get("map", "").splitlines(),
         "trust": trust_table(trust_of_result(result)),
-        "sample": paragraphs(sample_of_result(result)).get("sample"),
-        "advice": paragraphs(advice_lines(attrs["scene"], result.largest("resolution_error"))).get("advice"),
+        "sample": sample_of_result(result) or None,
+        "advice": advice_on(attrs["scene"], result.largest("resolution_error")) or None,
         "reference": None,
         "accuracy": attrs.get("accuracy") or None,
         "failed": describe_failed(result) or None,
@@ -75,14 +75,13 @@ def coordinate_tables(coordinates: Mapping[str, Array], sizes: dict[str, int]) -
     }
 
 
-def swept_table(
-    coordinates: Mapping[str, Array], sizes: dict[str, int], cell: tuple[int, ...]
-) -> dict[str, float | str]:
-    """Return the values of the swept keys in a cell."""
+def swept_table(coordinates: Mapping[str, Array], sizes: dict[str, int], number: int) -> dict[str, float | str]:
+    """Return the values of the swept keys in the cell of this number."""
+    cell = tuple(map(int, np.unravel_index(number, tuple(sizes.values()))))
     return {name: array.values.item() for name, array in swept_values(coordinates, list(sizes), cell).items()}
 
 
-def _cell(result: ResultView, cell: tuple[int, ...]) -> CellTable:
+def _cell(result: ResultView, number: int, cell: tuple[int, ...]) -> CellTable:
     def values(name: str) -> np.ndarray:
         return np.atleast_1d(result.variables[name].values[cell]) if name in result.variables else np.array([np.nan])
 
@@ -93,7 +92,7 @@ def _cell(result: ResultView, cell: tuple[int, ...]) -> CellTable:
     method = result.method(cell)
     accuracy: AccuracyTable | None = {"reached": largest("accuracy_reached"), "method": method} if method else None
     return {
-        "swept": swept_table(result.coordinates, result.sweep, cell),
+        "swept": swept_table(result.coordinates, result.sweep, number),
         "realizations": status.size if np.isnan(counts).any() else int(counts[0]),
         "status": {name: int((status == code).sum()) for code, name in enumerate(STATUSES)},
         "remark": first_remark(result, cell),

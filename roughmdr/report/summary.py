@@ -1,18 +1,21 @@
-"""Summaries of plans, results and ensembles, for the command line."""
+"""Results and ensembles in words, as commands print them."""
 
 from collections.abc import Iterator, Mapping
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from roughmdr.ensemble.maps.words import describe_map
-from roughmdr.report.advice import advice_lines
-from roughmdr.report.contact_pressure import conduction_lines, contact_pressure_lines
-from roughmdr.report.few_contacts import foreseen_sample, sample_of_result
-from roughmdr.report.prospect import implausible_lines, prospect_lines
+from roughmdr.fitting.stored import given_fit
+from roughmdr.fitting.words import describe_fit
+from roughmdr.report.advice import advice_on
+from roughmdr.report.contacts import conduction_lines, contact_pressure_lines, sample_of_result
 from roughmdr.report.pull_off import describe_pull_off
+from roughmdr.result.given import given_result
 from roughmdr.result.trust import trust_of_result
 from roughmdr.result.view import ResultView
+from roughmdr.schema.keywords import named_keywords
 from roughmdr.schema.units import format_quantity
 from roughmdr.schema.wording import format_bytes, format_seconds, format_table, printable, under
 from roughmdr.stages import STAGES
@@ -20,67 +23,13 @@ from roughmdr.storage.labelled import Array, Labelled
 from roughmdr.variables import DONE, FAILED, LATERAL, TIME
 
 if TYPE_CHECKING:
-    from roughmdr.batch.estimate import Estimate
-    from roughmdr.batch.foresee import Prospect
-    from roughmdr.batch.plan import Plan
+    import xarray as xr
 
 _NOT_KNOWN = "not known: no run was computed"
 _HEADINGS = ("cell", "status", "realisations", "time", "numerical error", "standard error", "method", "")
 
 
-def describe_plan(plan: "Plan", estimate: "Estimate", prospect: "Prospect", workers: int) -> str:
-    """Return what a run will do, how long it will take and how much memory."""
-    steps, output = plan.cells[0].path.separation.size, plan.scene.output
-    unlikely = implausible_lines(plan, prospect)
-    lines = [
-        *under("implausible", unlikely),
-        ("scene", printable(plan.scene.title)),
-        ("runs", f"{_sizes(plan.sizes, estimate.runs // len(plan.cells), steps)}: {estimate.runs} in total"),
-        *_required_accuracy(plan),
-        *under("lattice", plan.lattice_lines),
-        ("output", f"{', '.join(plan.variables)}; {output.keep}; {format_bytes(estimate.file)}"),
-        ("tasks", f"{estimate.tasks} on {workers} worker{'s' * (workers > 1)}"),
-        ("time", f"about {format_seconds(estimate.seconds)}, of which {format_seconds(estimate.start_up)} to start"),
-        ("memory", _memory(estimate)),
-        *_lateral(plan),
-        *prospect_lines(prospect),
-        *foreseen_sample(plan, prospect),
-        *(line for noted, lines in plan.stage_notes.items() for line in under(noted, lines)),
-        *advice_lines(plan.scene.toml, foreseen_resolution(prospect)),
-        *_beside(plan, estimate),
-        *_motion(plan.coordinates()),
-    ]
-    failures = dict.fromkeys([*estimate.failures, *prospect.failures])
-    map_lines = [text for text in plan.map_lines if text not in unlikely]
-    lines += [*under("map", map_lines), *under("warning", plan.warnings), *under("cannot run", failures)]
-    return format_table([*lines, *under("left out", plan.left_out)])
-
-
-def _memory(estimate: "Estimate") -> str:
-    total, resident, available = map(format_bytes, (estimate.memory, estimate.resident, estimate.available_memory))
-    too_much = estimate.memory - estimate.resident > estimate.available_memory
-    warning = f"; it can get only {available} more" if too_much else ""
-    return f"about {total}, of which {resident} for Python and its packages{warning}"
-
-
-def _required_accuracy(plan: "Plan") -> Iterator[tuple[str, str]]:
-    """Yield what [accuracy] requires."""
-    accuracy = plan.scene.accuracy
-    if accuracy is not None:
-        text = f"standard error at most {accuracy.relative:g} of the largest mean force, method {accuracy.method!r};"
-        yield "accuracy", text
-        yield "", f"realisations are added to each cell until it is met, up to {accuracy.max_realizations};"
-        yield "", "time, memory and tasks are those of the runs above"
-
-
-def _beside(plan: "Plan", estimate: "Estimate") -> Iterator[tuple[str, str]]:
-    """Yield what stages add to each run, and how long it may take."""
-    longest, finest = format_seconds(estimate.longest), format_bytes(estimate.finest)
-    for stage in plan.scene.stages:
-        yield from under(stage.key, stage.plan_lines(longest, finest))
-
-
-def _motion(coordinates: Mapping[str, Array]) -> Iterator[tuple[str, str]]:
+def motion_lines(coordinates: Mapping[str, Array]) -> Iterator[tuple[str, str]]:
     """Yield how long a viscoelastic body is pressed and released."""
     if TIME.name in coordinates:
         last = coordinates[TIME.name].values[..., -1]
@@ -88,14 +37,6 @@ def _motion(coordinates: Mapping[str, Array]) -> Iterator[tuple[str, str]]:
             "motion",
             f"{format_quantity(float(last.min()), 's', to=float(last.max()))} from the first step to the last",
         )
-
-
-def _lateral(plan: "Plan") -> Iterator[tuple[str, str]]:
-    """Yield the range of the lateral displacements."""
-    if plan.control == LATERAL.name:
-        ends = [(float(cell.values.min()), float(cell.values.max())) for cell in plan.cells]
-        lowest, highest = min(low for low, _ in ends), max(high for _, high in ends)
-        yield "lateral", f"displacement from {format_quantity(lowest, 'm', to=highest)}, what is normal held"
 
 
 def describe_result(result: ResultView, elapsed: float | None = None, *, left_out: bool = True) -> str:
@@ -111,22 +52,22 @@ def summary_lines(result: ResultView, elapsed: float | None = None) -> Iterator[
     time = f"{format_seconds(float(np.nansum(_values(result, 'run_time'))))} of work in the realisations"
     if elapsed is not None:
         time = f"{format_seconds(elapsed)}; {time}, over all workers"
-    yield "computed", f"{printable(attrs['title'])}: {_sizes(result.sweep, realizations, steps)}"
+    yield "computed", f"{printable(attrs['title'])}: {counted(result.sweep, realizations, steps)}"
     yield "variables", ", ".join(result.curves)
     yield from under("path", attrs.get("path", "").splitlines())
-    yield from _motion(result.coordinates)
+    yield from motion_lines(result.coordinates)
     yield from under("lattice", attrs.get("lattice", "").splitlines())
     yield from under("map", attrs.get("map", "").splitlines())
     yield from describe_pull_off(result, _NOT_KNOWN)
     yield from _avalanches(result)
     yield from _contacts_at_ends(result)
     yield from trust_of_result(result)
-    yield from sample_of_result(result)
+    yield from under("sample", sample_of_result(result).splitlines())
     yield from contact_pressure_lines(result)
     yield from conduction_lines(result)
     for noted in [stage.noted for stage in STAGES if stage.noted in attrs]:
         yield from under(noted, attrs[noted].splitlines())
-    yield from advice_lines(attrs["scene"], result.largest("resolution_error"))
+    yield from under("advice", advice_on(attrs["scene"], result.largest("resolution_error")).splitlines())
     yield from (line for stage in STAGES for line in stage.result_lines(result))
     yield from _adhesion(result)
     yield from under("accuracy", attrs.get("accuracy", "").splitlines())
@@ -134,11 +75,6 @@ def summary_lines(result: ResultView, elapsed: float | None = None) -> Iterator[
     yield from under("warning", attrs.get("warnings", "").splitlines())
     yield _numerical_error(result)
     yield "run time", time
-
-
-def foreseen_resolution(prospect: "Prospect") -> float:
-    """Return the largest error by the resolution of a map that was foreseen; 0 where no cell was."""
-    return max((cell.law.model_error.parts["resolution_error"] for cell in prospect.foreseen), default=0.0)
 
 
 def _numerical_error(result: ResultView) -> tuple[str, str]:
@@ -189,7 +125,8 @@ def _values(result: ResultView, name: str) -> np.ndarray:
     return result.variables[name].values
 
 
-def _sizes(swept: dict[str, int], realizations: int, steps: int) -> str:
+def counted(swept: dict[str, int], realizations: int, steps: int) -> str:
+    """Return the numbers of swept values, realisations and steps, as factors."""
     parts = [f"{size} {name}" for name, size in swept.items()]
     return " x ".join([*parts, f"{realizations} realisation{'s' * (realizations > 1)}", f"{steps} steps"])
 
@@ -277,3 +214,48 @@ def first_remark(result: ResultView, cell: tuple[int, ...]) -> str:
         return ""
     prefix = f"realisation {present[0]}: " if "realization" in result.coordinates["remark"].dims else ""
     return prefix + printable(str(remarks[present[0]]).split("\n")[0])
+
+
+@named_keywords
+def info(result: "str | Path | xr.Dataset", *, cells: bool = False) -> str:
+    """Return the text that ``roughmdr info`` prints of a result; nothing is printed.
+
+    Parameters
+    ----------
+    result : path or xarray.Dataset
+        A result file, or what ``run`` returned; of a fit, what ``fit`` did.
+    cells : bool, optional
+        Whether to list the cells of the sweep instead: status, time, errors and remarks.
+
+    Returns
+    -------
+    str
+        Lines with sizes, forces, errors, run time, seed, versions and the scene; of a fit its parameters.
+
+    Raises
+    ------
+    StoreError
+        Where there is no such file, or no result in it.
+
+    Examples
+    --------
+    >>> import roughmdr as rm
+    >>> result = rm.run({
+    ...     "title": "One patch", "material": {"effective_modulus": "1 GPa"}, "path": {"separation": ["3 um", "2 um"]},
+    ...     "asperities": {
+    ...         "source": "random", "shape": "paraboloid", "count": 500, "patch": "1 mm", "radius": "50 um",
+    ...         "height": {"distribution": "normal", "std": "1 um"},
+    ...     },
+    ... })
+    >>> print(rm.info(result).splitlines()[0])
+    computed     One patch: 1 realisation x 2 steps
+    """
+    fit = given_fit(result)
+    return describe_fit(fit) if fit is not None else describe(*given_result(result), cells=cells)
+
+
+def describe(result: ResultView, file: Path | None, *, cells: bool) -> str:
+    """Return that text of a result that was read, from ``file`` unless that is None."""
+    if cells:
+        return describe_cells(result)
+    return f"{describe_result(result)}\n{describe_origin(result, None if file is None else file.stat().st_size)}"

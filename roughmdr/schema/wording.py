@@ -56,6 +56,16 @@ def under(name: str, lines: Iterable[str]) -> Iterator[tuple[str, str]]:
     yield from ((name if number == 0 else "", line) for number, line in enumerate(lines))
 
 
+def gathered(lines: Iterable[tuple[str, str]]) -> dict[str, list[str]]:
+    """Return the texts of lines by their names; one without a name goes on under the name before."""
+    found: dict[str, list[str]] = {}
+    name = ""
+    for title, text in lines:
+        name = title or name
+        found.setdefault(name, []).append(text)
+    return found
+
+
 def format_table(lines: Iterable[tuple[str, str]]) -> str:
     """Return lines of a name and a text, the names in a column."""
     return "\n".join(f"{name:<12} {text}".rstrip() for name, text in lines)

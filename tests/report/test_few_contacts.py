@@ -15,7 +15,7 @@ from scenes import scene
 import roughmdr as rm
 from roughmdr.aggregate.law import effective_number
 from roughmdr.cli import main
-from roughmdr.report.few_contacts import sample_lines
+from roughmdr.report.contacts import describe_sample
 from roughmdr.variables import RUN_DIAGNOSTICS
 
 FORCES = st.lists(st.floats(1e-3, 1.0) | st.floats(-1.0, -1e-3), min_size=1, max_size=20)
@@ -43,8 +43,8 @@ def test_without_contact_there_is_no_number() -> None:
     assert math.isnan(effective_number(np.zeros(3)))
     assert math.isnan(effective_number(np.zeros(0)))
     none, some = np.array([0.0, -1.0, np.nan]), np.array([0.0, 4.0, np.nan])
-    assert not list(sample_lines([none], "[asperities]"))
-    ((_, words),) = sample_lines([none, some], "[asperities]")
+    assert not describe_sample([none], "[asperities]")
+    words = describe_sample([none, some], "[asperities]")
     assert words.startswith("about 4 contacts")
 
 
@@ -80,11 +80,10 @@ def test_plan_run_and_info_say_it(tmp_path: Path) -> None:
 def test_nothing_is_said_of_many_contacts_nor_of_few_that_were_asked_for() -> None:
     toml = "[asperities]\nsource = 'random'\ncount = {}"
     unknown = np.full(3, math.nan)
-    assert not list(sample_lines([np.array([9.0, 12.0, 30.0]), unknown], toml.format(500)))
-    assert not list(sample_lines([np.array([1.0])], toml.format(1)))
+    assert not describe_sample([np.array([9.0, 12.0, 30.0]), unknown], toml.format(500))
+    assert not describe_sample([np.array([1.0])], toml.format(1))
     for source, word in (("surface", "map"), ("file", "ensemble"), ("random", "realisation")):
-        ((name, text),) = sample_lines([np.array([4.0]), unknown], f"[asperities]\nsource = '{source}'")
-        assert name == "sample"
+        text = describe_sample([np.array([4.0]), unknown], f"[asperities]\nsource = '{source}'")
         assert f"about 4 contacts carry the load at closest approach: one {word} is" in text
         assert text.endswith("differs by about 50 %")
 
@@ -98,7 +97,6 @@ def test_of_statistics_the_least_is_kept() -> None:
 
 def test_of_several_cells_the_median_of_each_counts_and_the_fewest_scatter_most() -> None:
     runs = [np.array([4.0, 5.0, 100.0]), np.array([7.0, np.nan]), np.array([40.0]), np.array([np.nan])]
-    ((name, told),) = sample_lines(runs, 'asperities = { source = "surface" }')
-    assert name == "sample"
+    told = describe_sample(runs, 'asperities = { source = "surface" }')
     assert told.startswith("about 5 to 7 contacts carry the load at closest approach in 2 of 3 cells: one map is one")
     assert told.endswith("the load of another differs by up to about 45 %")

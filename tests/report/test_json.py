@@ -20,7 +20,7 @@ from scenes import ASPERITIES, scene
 import roughmdr as rm
 from roughmdr.cli import main
 from roughmdr.report import documents
-from roughmdr.report.info import info
+from roughmdr.report.summary import info
 from roughmdr.runner import run as runner
 
 FEW = scene(asperities={**ASPERITIES, "count": 50}, batch={"realizations": 3})

@@ -16,7 +16,7 @@ from roughmdr.cli import main
 from roughmdr.ensemble.ensemble import Ensemble
 from roughmdr.ensemble.maps.plausible import implausible
 from roughmdr.ensemble.maps.resolution import radius_uncertainty, verdict
-from roughmdr.report.advice import advice_lines
+from roughmdr.report.advice import advice_on
 
 SURFACE = {"source": "surface", "file": "map.npy"}
 
@@ -95,5 +95,5 @@ def test_advice_and_verdict_agree_on_whether_summits_are_resolved(points: float,
     attrs: dict[str, float | int | str] = {"points_per_summit": points, "misfit": misfit, "of_surface": 1}
     attrs["radius_uncertainty"] = radius_uncertainty(attrs)
     error = Ensemble("paraboloid", np.zeros(1), {"radius": np.ones(1)}, attrs=attrs).resolution_error
-    ((_, advice),) = advice_lines(tomli_w.dumps({"asperities": SURFACE}), error)
+    advice = advice_on(tomli_w.dumps({"asperities": SURFACE}), error)
     assert ("resolves its summits" in verdict(attrs)) == ("too coarse or noisy" not in advice)

@@ -22,9 +22,9 @@ from roughmdr.fitting.stored import as_fit
 from roughmdr.fitting.words import describe_fit
 from roughmdr.report.cite import describe_papers
 from roughmdr.report.export.write import Export, document_of
-from roughmdr.report.info import describe
 from roughmdr.report.page import error_rows
 from roughmdr.report.result_document import result_table
+from roughmdr.report.summary import describe
 from roughmdr.result.view import ResultView
 from roughmdr.storage.labelled import Array, Labelled
 from roughmdr.storage.result_form import forms_of

@@ -3,13 +3,14 @@
 import math
 from collections.abc import Iterator
 
-from roughmdr.report.contact_pressure import conduction_lines, contact_pressure_lines
+from roughmdr.report.contacts import conduction_lines, contact_pressure_lines
 from roughmdr.report.export.law import Quantity, Source
 from roughmdr.report.export.table import RELATIVE_FROM, Table
 from roughmdr.report.export.units import UnitSystem
 from roughmdr.result.between import CONFIDENCE
 from roughmdr.result.trust import trust_of_result
 from roughmdr.result.view import ResultView
+from roughmdr.schema.wording import gathered
 from roughmdr.variables import CONDUCTANCES, TIME
 
 
@@ -72,9 +73,4 @@ def table_lines(
 
 def model_lines(cell: ResultView) -> Iterator[tuple[str, str]]:
     """Yield the error of the model and up to where it holds, a line for each name."""
-    texts: dict[str, list[str]] = {}
-    name = ""
-    for title, text in trust_of_result(cell):
-        name = title or name
-        texts.setdefault(name, []).append(text)
-    yield from ((name, "; ".join(lines)) for name, lines in texts.items())
+    yield from ((name, "; ".join(texts)) for name, texts in gathered(trust_of_result(cell)).items())

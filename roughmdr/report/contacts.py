@@ -1,15 +1,65 @@
-"""Contacts of a result in words: their mean pressure, which tells whether bodies would yield, and errors of others."""
+"""Contacts of a result in words: how few carry the load, their mean pressure, errors of what passes through them."""
 
+import math
 from collections.abc import Iterator
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from roughmdr.numerics.arguments import Floats
 from roughmdr.result.view import ResultView
+from roughmdr.schema.toml_text import parse_toml
 from roughmdr.schema.units import format_quantity
 
+if TYPE_CHECKING:
+    from roughmdr.batch.foresee import Prospect
+    from roughmdr.batch.plan import Plan
+
+_FEW = 10.0
+"""Effective number of contacts below which the load of a sample scatters by more than a third of itself."""
+
+_SAMPLES = {"surface": "map", "spectrum": "map", "file": "ensemble"}  # words for a sample, by source
 _ELASTIC = "plastic flow is not modelled: above about the hardness of the softer body they yield, and become larger"
 _ERRORS = {"conductance": "conductance_error", "sticking": "tangential_error"}
+
+
+def describe_sample(effective: list[Floats], scene: str) -> str:
+    """Return where few contacts carry the load at closest approach in cells of a scene, as TOML; empty where none do.
+
+    ``effective`` are the effective numbers of contacts in the runs of each cell, above 0 where they are known; their
+    median counts. Nothing is said where the scene asks for so few asperities.
+    """
+    runs = [cell[np.isfinite(cell) & (cell > 0.0)] for cell in effective]
+    known = [float(np.median(cell)) for cell in runs if cell.size]
+    few = [number for number in known if number < _FEW]
+    asperities = parse_toml(scene).get("asperities")
+    if not few or not isinstance(asperities, dict):
+        return ""
+    count = asperities.get("count")
+    if isinstance(count, int) and count < _FEW:
+        return ""
+    least = min(few)
+    counted = " to ".join(dict.fromkeys(f"{number:.2g}" for number in (least, max(few))))
+    share = f" in {len(few)} of {len(known)} cells" if len(known) > 1 else ""
+    sample = _SAMPLES.get(str(asperities.get("source")), "realisation")
+    scatter = f"{'up to ' if len(few) > 1 else ''}about {100.0 / math.sqrt(least):.2g} %"
+    return (
+        f"about {counted} contacts carry the load at closest approach{share}: one {sample} is one sample; at the same "
+        f"separation the load of another differs by {scatter}"
+    )
+
+
+def sample_of_result(result: ResultView) -> str:
+    """Return that of a result; empty where an earlier version did not store what it takes."""
+    if "effective_contacts" not in result.variables:
+        return ""
+    runs = [np.atleast_1d(result.variables["effective_contacts"].values[cell]) for cell in result.cells]
+    return describe_sample(runs, result.attrs["scene"])
+
+
+def foreseen_sample(plan: "Plan", prospect: "Prospect") -> str:
+    """Return that of a plan, from the cells that were foreseen."""
+    return describe_sample([np.array([cell.law.effective_contacts]) for cell in prospect.foreseen], plan.scene.toml)
 
 
 def contact_pressure_lines(result: ResultView) -> Iterator[tuple[str, str]]:
