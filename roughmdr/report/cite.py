@@ -2,10 +2,11 @@
 
 import os
 import re
+from collections.abc import Collection, Mapping
 from functools import cache
 from importlib.resources import files
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 
 import numpy as np
 
@@ -25,6 +26,7 @@ from roughmdr.stages import STAGES, stages_in
 if TYPE_CHECKING:
     import xarray as xr
 
+_Named = TypeVar("_Named")
 _PROGRAM = "roughmdr"
 _SOFTWARE = ("Harris2020", "Lam2015", "Virtanen2020", "Hoyer2017", "Rocklin2015")
 _LETTERS = {"``": "“", "''": "”", "{\\ss}": "ß", '{\\"a}': "ä", '{\\"o}': "ö", '{\\"u}': "ü", "--": "-"}
@@ -77,7 +79,7 @@ def cite(target: "str | Path | xr.Dataset | Scene", *, bibtex: bool = False) -> 
 
 def describe_papers(scene: str, result: ResultView | None, *, bibtex: bool) -> str:
     """Return that text of a scene, as TOML, and of its ``result`` where there is one."""
-    entries, cited = _entries(), _cited(_Used.of(scene, result))
+    entries, cited = _entries(), _cited(_Used(parse_toml(scene), result))
     keys = sorted(cited, key=list(entries).index)
     version = "" if result is None else printable(str(result.attrs["source"])).removeprefix(f"{_PROGRAM} ")
     if bibtex:
@@ -96,11 +98,6 @@ class _Used(NamedTuple):
 
     table: dict[str, Any]
     result: ResultView | None
-
-    @classmethod
-    def of(cls, scene: str, result: ResultView | None) -> "_Used":
-        """Return what a scene, as TOML, and its result use."""
-        return cls(parse_toml(scene), result)
 
     def values(self, key: str) -> list[Any]:
         """Return the values that a dotted key has, one for each cell that changes it."""
@@ -156,22 +153,30 @@ def _cited(used: _Used) -> dict[str, str]:
     """Return what each paper is cited for, by its key in papers.bib."""
     cited = {"Hess2012": "mapping", "PopovHess2015": "mapping", "Sneddon1965": "contact"}
     models = used.adhesion_models
-    for shape in (shape for name, shape in SHAPES.items() if name in used.shapes):
+    for shape in _named(SHAPES, used.shapes):
         cited |= {key: reason for key, reason in shape.papers.items() if models or reason != "adhesion"}
-    for model in models:
-        cited |= dict.fromkeys(PAPERS.get(model, ()), "adhesion")
+    for keys in _named(PAPERS, models):
+        cited |= dict.fromkeys(keys, "adhesion")
     if models and (used.values("adhesion.strength") or used.values("adhesion.range")):
         cited["Tabor1977"] = "adhesion"
     if not used.hills:
         cited["Greenwood1966"] = "roughness"
-        for source in (source for name, source in SOURCES.items() if name in used.sources):
+        for source in _named(SOURCES, used.sources):
             cited |= source.papers
     if used.values("asperities.hurst"):
         cited["Persson2005"] = "roughness"
-    interactions, boundaries = used.values("interaction.model"), used.values("interaction.boundary") or ["periodic"]
-    if "pairwise" in interactions and "periodic" in boundaries:
+    for stage in STAGES:
+        cited |= stage.cites(used.table, list(used.table.get("output", {}).get("variables", ())))
+    return cited | _of_coupling(used) | dict.fromkeys(_SOFTWARE, "software")
+
+
+def _of_coupling(used: _Used) -> dict[str, str]:
+    """Return that of papers on contacts that feel each other, and on boundary elements."""
+    cited = {}
+    models, boundaries = used.values("interaction.model"), used.values("interaction.boundary") or ["periodic"]
+    if "pairwise" in models and "periodic" in boundaries:
         cited["Ewald1921"] = "interaction"
-    if "mean_field" in interactions:
+    if "mean_field" in models:
         cited["Ciavarella2008"] = "interaction"
     if used.grid:
         cited["Polonsky1999"] = "elements"
@@ -179,9 +184,12 @@ def _cited(used: _Used) -> dict[str, str]:
             cited["Stanley1997"] = "elements"
         if "free" in boundaries or ("surface" in used.sources and "interaction" not in used.table):
             cited["Love1929"] = "elements"
-    for stage in STAGES:
-        cited |= stage.cites(used.table, list(used.table.get("output", {}).get("variables", ())))
-    return cited | dict.fromkeys(_SOFTWARE, "software")
+    return cited
+
+
+def _named(table: Mapping[str, _Named], names: Collection[str]) -> list[_Named]:
+    """Return the entries of a table that have one of these names; another version may know more names."""
+    return [entry for name, entry in table.items() if name in names]
 
 
 @cache
