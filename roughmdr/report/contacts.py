@@ -2,7 +2,6 @@
 
 import math
 from collections.abc import Iterator
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -10,10 +9,6 @@ from roughmdr.numerics.arguments import Floats
 from roughmdr.result.view import ResultView
 from roughmdr.schema.toml_text import parse_toml
 from roughmdr.schema.units import format_quantity
-
-if TYPE_CHECKING:
-    from roughmdr.batch.foresee import Prospect
-    from roughmdr.batch.plan import Plan
 
 _FEW = 10.0
 """Effective number of contacts below which the load of a sample scatters by more than a third of itself."""
@@ -55,11 +50,6 @@ def sample_of_result(result: ResultView) -> str:
         return ""
     runs = [np.atleast_1d(result.variables["effective_contacts"].values[cell]) for cell in result.cells]
     return describe_sample(runs, result.attrs["scene"])
-
-
-def foreseen_sample(plan: "Plan", prospect: "Prospect") -> str:
-    """Return that of a plan, from the cells that were foreseen."""
-    return describe_sample([np.array([cell.law.effective_contacts]) for cell in prospect.foreseen], plan.scene.toml)
 
 
 def contact_pressure_lines(result: ResultView) -> Iterator[tuple[str, str]]:

@@ -8,7 +8,7 @@ from roughmdr.batch.estimate import Estimate
 from roughmdr.batch.foresee import Foreseen, Prospect
 from roughmdr.batch.plan import Plan
 from roughmdr.report.advice import advice_on
-from roughmdr.report.contacts import foreseen_sample
+from roughmdr.report.contacts import describe_sample
 from roughmdr.report.documents import ForeseenTable, PlanTable, trust_table
 from roughmdr.report.prospect import implausible_lines, largest_tension, pressure_at_closest, prospect_lines
 from roughmdr.report.result_document import coordinate_tables, swept_table
@@ -34,7 +34,7 @@ def describe_plan(plan: Plan, estimate: Estimate, prospect: Prospect, workers: i
         ("memory", _memory(estimate)),
         *_lateral(plan),
         *prospect_lines(prospect),
-        *under("sample", foreseen_sample(plan, prospect).splitlines()),
+        *under("sample", _sample(plan, prospect).splitlines()),
         *(line for noted, lines in plan.stage_notes.items() for line in under(noted, lines)),
         *under("advice", advice_on(plan.scene.toml, _resolution(prospect)).splitlines()),
         *_beside(plan, estimate),
@@ -83,6 +83,11 @@ def _resolution(prospect: Prospect) -> float:
     return max((cell.law.model_error.parts["resolution_error"] for cell in prospect.foreseen), default=0.0)
 
 
+def _sample(plan: Plan, prospect: Prospect) -> str:
+    """Return where few contacts carry the load in the cells that were foreseen; empty where none do."""
+    return describe_sample([np.array([cell.law.effective_contacts]) for cell in prospect.foreseen], plan.scene.toml)
+
+
 def plan_table(plan: Plan, estimate: Estimate, prospect: Prospect, workers: int) -> PlanTable:
     """Return all that ``describe_plan`` tells, as numbers."""
     scene, accuracy = plan.scene, plan.scene.accuracy
@@ -113,7 +118,7 @@ def plan_table(plan: Plan, estimate: Estimate, prospect: Prospect, workers: int)
         "lattice": plan.lattice_lines,
         "map": plan.map_lines,
         "trust": trust_table(prospect_lines(prospect)),
-        "sample": foreseen_sample(plan, prospect) or None,
+        "sample": _sample(plan, prospect) or None,
         "advice": advice_on(scene.toml, _resolution(prospect)) or None,
         "warnings": plan.warnings,
         "failures": list(dict.fromkeys([*estimate.failures, *prospect.failures])),
