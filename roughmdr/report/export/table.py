@@ -39,16 +39,12 @@ class Table(NamedTuple):
     """Parts of the law that the table leaves out, in words."""
 
 
+@np.errstate(all="ignore")  # numbers that no float can hold are refused
 def table_of(law: Law, quantity: Quantity, branch: str, *, error: float, with_tension: bool) -> Table:
     """Return the table of a law with the fewest knots that keep within ``error``, as ``tolerances`` says.
 
     StoreError where the steps of the path are too far apart for that error, and errors of ``stable_part``.
     """
-    with np.errstate(all="ignore"):  # numbers that no float can hold are refused
-        return _table_of(law, quantity, branch, error, with_tension=with_tension)
-
-
-def _table_of(law: Law, quantity: Quantity, branch: str, error: float, *, with_tension: bool) -> Table:
     negligible = error * RELATIVE_FROM * float(law.pressure.max())
     part = stable_part(law, branch, with_tension=with_tension, negligible=negligible)
     x, y = (part.pressure, part.value) if quantity.over_pressure else (part.overclosure, part.value)

@@ -52,16 +52,15 @@ class UnitSystem(NamedTuple):
         length = given.get("length", ("m", Decimal(1)))
         area = length[1] * length[1]
         if "stress" in given and "force" not in given:
-            stress = given["stress"]
-            force = _named("N", stress[1] * area, f"{stress[0]} {length[0]}^2")
+            name, size = given["stress"]
+            force = _named("N", size * area, f"{name} {length[0]}^2")
         else:
             force = given.get("force", ("N", Decimal(1)))
-            stress = given.get("stress", _named("Pa", force[1] / area, f"{force[0]}/{length[0]}^2"))
+        fitting = _named("Pa", force[1] / area, f"{force[0]}/{length[0]}^2")
+        stress = given.get("stress", fitting)
         if stress[1] * area != force[1]:
-            fitting = _named("Pa", force[1] / area, f"{force[0]}/{length[0]}^2")[0]
-            raise StoreError(
-                f"units: {text!r} are not consistent: {force[0]} over {length[0]} squared is {fitting}, not {stress[0]}"
-            )
+            said = f"{force[0]} over {length[0]} squared is {fitting[0]}, not {stress[0]}"
+            raise StoreError(f"units: {text!r} are not consistent: {said}")
         power = given.get("power", _named("W", force[1] * length[1], f"{force[0]} {length[0]}/s"))
         siemens = given.get("siemens", ("S", Decimal(1)))
         return cls(*(Unit(name, float(size)) for name, size in (length, force, stress, power, siemens)))
