@@ -40,10 +40,10 @@ docs: setup
 	@echo "docs/_build/html/index.html"
 
 studies: setup
-	@$(BIN)/python pipelines/all_studies.py --quick -o results/studies
+	@$(BIN)/python pipelines/study.py all --quick -o results/studies
 
 studies-full: setup
-	@$(BIN)/python pipelines/all_studies.py -o results/studies
+	@$(BIN)/python pipelines/study.py all -o results/studies
 
 lint: setup
 	$(BIN)/ruff check .

@@ -103,4 +103,4 @@ pd.DataFrame(errors, ["force, r.m.s. [%]", "contact area, r.m.s. [%]", "model_er
 # - Hills in pairs give the force well, and the contact area less well. Use them for what elements do not give here,
 #   such as adhesion or a machine that holds the flat.
 # - Summits alone bear too little. On this map their force is nearer than the stated error. On the 33 maps of
-#   ``pipelines/hills.py`` it is off by 32 % r.m.s., so do not rely on that. ``rm.info`` gives the same advice.
+#   ``pipelines/study.py hills`` it is off by 32 % r.m.s., so do not rely on that. ``rm.info`` gives the same advice.

@@ -6,7 +6,7 @@ from statistics import median
 import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
-from studies.study import named, table
+from studies.study import Study, named, table
 
 from benchmarks import capacity, child
 from benchmarks.process import in_new_process
@@ -123,3 +123,13 @@ def report(result: xr.Dataset) -> str:
         f"one on threads, {up[1]:.2f} times on processes (goal {SPEED_GOAL})."
     )
     return f"{goals}\n\n{tables(result)}\n\n{capacity.report(result)}"
+
+
+STUDY = Study(
+    "batch",
+    "What the batch engine costs",
+    measure,
+    draw,
+    report,
+    "few cells, tasks, asperities and realisations, each timed once",
+)

@@ -10,9 +10,10 @@ from pathlib import Path
 import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
-from studies.study import named
+from studies.study import Study, named
 
 import roughmdr
+from benchmarks.batch import tables
 from benchmarks.child import run_command
 from benchmarks.process import in_new_process
 from roughmdr.batch.estimate import estimate
@@ -66,3 +67,6 @@ def draw(result: xr.Dataset) -> Figure:
     panel.set_xticks(x, result["scene"].to_numpy())
     panel.legend(frameon=False)
     return figure
+
+
+STUDY = Study("foreseen", "What roughmdr plan foresees", measure, draw, tables, f"1 of {len(SCENES)} scenes")

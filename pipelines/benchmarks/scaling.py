@@ -13,7 +13,7 @@ import xarray as xr
 from matplotlib.figure import Figure
 from oracles.plain_sums import Sums, with_brentq, with_numpy
 from scipy.optimize import brentq
-from studies.study import named
+from studies.study import Study, named
 
 import roughmdr as rm
 from benchmarks.batch import by_cell, tables
@@ -180,3 +180,13 @@ def report(result: xr.Dataset) -> str:
         "the sum over {asperities} paraboloids, {dugdale_count} of them with Dugdale adhesion; a sweep of {cells} cells"
     )
     return f"Measured on {counts.format(**result.attrs)}.\n\n{tables(result)}"
+
+
+STUDY = Study(
+    "scaling",
+    "What the sum costs",
+    measure,
+    draw,
+    report,
+    f"up to {ASPERITIES[True]} of {ASPERITIES[False]} asperities, each timed once",
+)

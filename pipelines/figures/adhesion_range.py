@@ -12,7 +12,7 @@ import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
 from scipy.stats import norm
-from studies.study import named
+from studies.study import Study, named
 
 import roughmdr as rm
 from roughmdr.aggregate.tabor import SHIFT
@@ -121,3 +121,14 @@ def report(result: xr.Dataset) -> str:
     """Return the largest error of JKR over the rule."""
     worst = float((result.jkr_error * result.roughness * result.rough_tabor / SHIFT).max())
     return f"the error of JKR is at most {worst:.2f} of {SHIFT:g} |δc|/std/Tabor number"
+
+
+STUDY = Study(
+    "adhesion_range",
+    "Adhesion of finite range",
+    measure,
+    draw,
+    report,
+    f"{TABOR_NUMBERS[True]} of {TABOR_NUMBERS[False]} Tabor numbers, "
+    f"{ASPERITIES[True]} of {ASPERITIES[False]} asperities",
+)

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
-from studies.study import named
+from studies.study import Study, named
 
 import roughmdr as rm
 
@@ -92,3 +92,13 @@ def report(result: xr.Dataset) -> str:
         f"contact {100.0 * float(last['contact_fraction'].sel(model=name)):.3g} %"
         for name in MODELS
     )
+
+
+STUDY = Study(
+    "interaction",
+    "Asperities that feel each other",
+    measure,
+    draw,
+    report,
+    f"{ASPERITIES[True]} of {ASPERITIES[False]} asperities, a quarter of the steps",
+)

@@ -4,10 +4,11 @@ import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from studies.study import Draw
+from studies.study import Draw, Study
 
 import roughmdr as rm
 from figures.drawing import COMPRESSED, STRETCHED, draw_axes, draw_body, draw_jump, draw_length, draw_springs
+from figures.one_asperity import POINTS, QUICK, measure, report
 
 _STEPS = {
     "pressed": "1  pressed by g(a), without adhesion",
@@ -139,3 +140,8 @@ PICTURES: dict[str, Draw] = {
     "pull_off_curves": draw_pull_off_curves,
     "shape_and_pull_off": draw_shape_and_pull_off,
 }
+
+
+STUDY = Study(
+    "one_asperity", "One asperity under JKR adhesion", measure, PICTURES, report, f"{QUICK} of {POINTS} shapes"
+)

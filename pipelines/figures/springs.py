@@ -13,7 +13,7 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
-from studies.study import Draw, named
+from studies.study import Draw, Study, named
 
 import roughmdr as rm
 from figures.drawing import COMPRESSED, STRETCHED, draw_axes, draw_body, draw_length, draw_springs
@@ -236,3 +236,13 @@ def draw_errors(result: xr.Dataset) -> Figure:
 
 
 PICTURES: dict[str, Draw] = {"springs_row": draw_row, "springs_error": draw_errors}
+
+
+STUDY = Study(
+    "springs",
+    "One asperity as a row of springs",
+    measure,
+    PICTURES,
+    report,
+    f"rows of up to {max(QUICK)} of {max(COUNTS)} springs",
+)

@@ -15,7 +15,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from oracles.gaussian_maps import gaussian_map, wave_numbers, wave_variances
 from oracles.map_summits import Series
-from studies.study import named
+from studies.study import Study, named
 
 from roughmdr.ensemble.gaussian.summit_distribution import SummitDistribution, Summits, product_density
 from roughmdr.ensemble.maps.height_map import HeightMap
@@ -190,3 +190,13 @@ def _draw_bias(bias: Axes, result: xr.Dataset) -> None:
     bias.set_xscale("log", base=2)
     bias.set_xticks(result.points_per_wave.to_numpy(), [str(int(n)) for n in result.points_per_wave])
     bias.set(xlabel="points a shortest wave", ylabel="off by [%]", title="paraboloids fitted to neighbours")
+
+
+STUDY = Study(
+    "summits",
+    "Summits of Gaussian surfaces",
+    measure,
+    draw,
+    report,
+    f"{MAPS[True]} of {MAPS[False]} maps, on coarser grids; a tenth of the drawn summits",
+)

@@ -17,7 +17,7 @@ from roughmdr.batch.moments import Moments, MomentTree, block_moments
 from roughmdr.batch.stopping_rule import FIRST, next_count, relative_error
 from roughmdr.numerics.arguments import Floats
 from roughmdr.scene.sections import Accuracy
-from studies.study import named, table
+from studies.study import Study, named, table
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -181,3 +181,13 @@ def report(result: xr.Dataset) -> str:
             rows.append([scene, f"{float(rule.asked):.2g}", f"{minimal}", *met, *times])
     head = ["scene", "error", "fewest", "met", "met by the estimate alone", "taken over fewest: median", "5 %", "95 %"]
     return table(head, rows)
+
+
+STUDY = Study(
+    "accuracy",
+    "Errors asked for, and reached",
+    measure,
+    draw,
+    report,
+    f"{RUNS[True]} of {RUNS[False]} runs, drawn from {REALIZATIONS[True]} of {REALIZATIONS[False]} realisations",
+)

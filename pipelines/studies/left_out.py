@@ -23,7 +23,7 @@ from roughmdr.runner.backend import Backend
 from roughmdr.runner.run import execute
 from roughmdr.scene import Scene, read
 from roughmdr.variables import CURVE_VARIABLES, DEFAULT_VARIABLES
-from studies.study import named, table
+from studies.study import Study, named, table
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -189,3 +189,13 @@ Forced on or left out, the forces are the same to {float(result.difference.where
 JKR in place of adhesion with a range is off by {float(result.difference.where(ranged).max()):.1g}, of the 0.01 that the
 scene allows.
 """
+
+
+STUDY = Study(
+    "left_out",
+    "What leaving out saves",
+    measure,
+    draw,
+    report,
+    f"{ASPERITIES[True]} of {ASPERITIES[False]} asperities, {RUNS[True]} of {RUNS[False]} realisations",
+)

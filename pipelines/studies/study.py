@@ -4,7 +4,6 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple, TypeAlias
 
-import click
 import xarray as xr
 
 from roughmdr.storage.files import replace_atomically
@@ -16,11 +15,6 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 Draw: TypeAlias = "Callable[[xr.Dataset], Figure]"
-OUTPUT = click.option(
-    "-o", "--output", type=click.Path(file_okay=False, path_type=Path), default=Path("results/studies"),
-    show_default=True, help="Folder to write to.",
-)  # fmt: skip
-QUICK = click.option("--quick", is_flag=True, help="A reduced form, with rough figures, that says what it leaves out.")
 REDUCED = "Reduced form: "
 """Begins the line of a report that says what its study leaves out."""
 
@@ -45,7 +39,9 @@ class Study(NamedTuple):
         output.mkdir(parents=True, exist_ok=True)
         words = f"{REDUCED}{self.reduced}." if quick else ""
         result = self.measure(quick)
-        result = result.assign_attrs(provenance(self.title, f"{self.name}.py"), **{"comment": words} if quick else {})
+        result = result.assign_attrs(
+            provenance(self.title, f"study.py {self.name}"), **{"comment": words} if quick else {}
+        )
         write_netcdf(Labelled.of(result), output / f"{self.name}.nc")
         for name, draw in (self.draw if isinstance(self.draw, dict) else {self.name: self.draw}).items():
             with replace_atomically(output / f"{name}.png") as temporary:
@@ -53,18 +49,6 @@ class Study(NamedTuple):
                 figure.text(0.5, 0.0, words, ha="center", va="top", color="tab:red")  # below all that is drawn
                 figure.savefig(temporary, dpi=160, format="png", bbox_inches="tight" if quick else None)
         return "\n\n".join(filter(None, (f"## {self.title}", words, self.report(result).strip()))) + "\n"
-
-    @property
-    def command(self) -> click.Command:
-        """The study as a command."""
-
-        @click.command(help=self.title)
-        @OUTPUT
-        @QUICK
-        def main(output: Path, quick: bool) -> None:
-            click.echo(self.carry_out(output, quick), nl=False)
-
-        return main
 
 
 def named(long_name: str, units: str = "1") -> dict[str, str]:

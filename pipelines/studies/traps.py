@@ -19,6 +19,7 @@ import xarray as xr
 from click.testing import CliRunner
 
 from roughmdr.cli import main
+from studies.study import Study
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -183,3 +184,6 @@ def report(found: xr.Dataset) -> str:
         f"{float(done.model_error.median()):.2g}; the largest contact fraction is "
         f"{float(done.contact_fraction.max()):.2g}."
     )
+
+
+STUDY = Study("traps", "Mistakes in scenes", measure, draw, report, f"{QUICK_COUNT} of {COUNT} scenes")

@@ -16,7 +16,7 @@ SHIFT, _AT_A_CORNER = 5.0, 2.0
 """The error of JKR's force for many asperities, over the largest force, is at most (5 |delta_c|/std + 2 at a corner)
 over the Tabor number, std that of the heights: under Dugdale's adhesion contacts are made sooner by w/sigma0. Measured
 with paraboloids of normal heights, |delta_c|/std from 0.1 to 10, Tabor numbers from 1 to 100, the flat down to 2, 0 and
--1 std (``pipelines/adhesion_range.py``): there at most 4.3.
+-1 std (``pipelines/study.py adhesion_range``): there at most 4.3.
 Rounded punches need no more, however sharp their edges are: contacts detach at nearly the force of JKR."""
 
 
@@ -27,7 +27,7 @@ _JUMP, _JUMP_POWER = 1.6, -4.0 / 7.0
 """Distance before touch from which attraction with a range pulls a contact on, over the stretch at which it detaches:
 factor and power of the Tabor number. The power is that of van der Waals forces (J.-J. Wu, J. Adhes. 86 (2010) 1071).
 The factor bounds what boundary elements find, 0.8 at a Tabor number of 2 and 0.5 at 6
-(``pipelines/versus_adhesive_bem.py``)."""
+(``pipelines/study.py versus_adhesive_bem``)."""
 
 _PER_FOLD = 4.0  # pull-off force of a paraboloid over E* a |delta| at its detachment under fixed grips
 

@@ -1,7 +1,7 @@
 """Rough costs of runs, by which they are split into tasks and the cheapest method for an asked error is chosen.
 
-Seconds on one core of a small server (``pipelines/work_precision.py``, ``pipelines/scaling.py``), right to a factor of
-about three. They are constants, never measured while a batch runs, so that every machine chooses alike.
+Seconds on one core of a small server (``pipelines/study.py``: work_precision, scaling), right to a factor of about
+three. They are constants, never measured while a batch runs, so that every machine chooses alike.
 """
 
 from typing import NamedTuple
@@ -51,7 +51,7 @@ paraboloids 1.6 to 5.4 (2000 to 7600 contacts), of spheres 23 to 27 (190 to 2700
 _HEIGHTS = 1000  # asperities that are drawn to tell which share touches
 _MEAN_FIELD_PASSES = 6  # times as long as independent asperities, by Newton's method with all steps at once
 # Asperities that feel each other in pairs: to begin, each separation of the path (which is solved once), and for each
-# of the asperities there (``pipelines/coupling.py``).
+# of the asperities there (``pipelines/study.py coupling``).
 _PAIRWISE_BEGIN, _PAIRWISE_STEP, _PAIRWISE_VISIT = 5e-2, 5e-3, 1.5e-5
 # With adhesion: a step of the path, and each contact that is made and lost, the longer the more asperities there are.
 _ADHERING_STEP, _ADHERING, _ADHERING_SQUARE = 1.1e-3, 3.7e-3, 7.5e-9

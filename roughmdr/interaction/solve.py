@@ -26,7 +26,8 @@ from roughmdr.numerics.underway import each_step
 from roughmdr.shapes import SHAPES
 
 DENSE_UP_TO: dict[Boundary, int] = {"periodic": 150, "free": 1500}
-"""Number of asperities up to which pairs are summed one by one: where both take as long (``pipelines/coupling.py``)."""
+"""Number of asperities up to which pairs are summed one by one: where both take as long
+(``pipelines/study.py coupling``)."""
 _MESH_ERROR, _SOLVER_ERROR = 0.3, 0.6  # of the error asked for
 _TANGENT_ERROR = 1e-3  # of the mesh for the steps, each of which leaves a few per cent
 _GROWTH = 1.3  # of the number of asperities that can touch, so that a few separations have the same

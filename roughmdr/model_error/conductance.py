@@ -1,4 +1,4 @@
-"""The error of the conductance at given separation, against boundary elements (``pipelines/conductance.py``)."""
+"""The error of the conductance at given separation, against boundary elements (``pipelines/study.py conductance``)."""
 
 import math
 
@@ -17,7 +17,7 @@ _NEAR, _OVERLAP = 0.1, 0.2
 _FIRST_ORDER, _THIRD = 2.0, 1.5
 """Error that the first order adds, over this power of the contact fraction: (a/D)^3."""
 _HILLS, _SUMMITS = 0.1, 2.5
-"""Error of the hills of an isotropic map, two r.m.s. errors of their stiffness (``pipelines/hills.py``); error of
+"""Error of the hills of an isotropic map, two r.m.s. errors of their stiffness (``pipelines/study.py hills``); error of
 summits, over the root of the contact fraction."""
 
 

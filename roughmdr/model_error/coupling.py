@@ -20,12 +20,12 @@ _SUMMITS = 1.3
 """Error of summits, over the root of the contact fraction: flanks of a continuous surface are no paraboloids."""
 
 _HILLS = 0.06
-"""Error of the hills of an isotropic map, from 0.3 to 20 % contact (``pipelines/hills.py``); it grows as the root of
+"""Error of the hills of an isotropic map, from 0.3 to 20 % contact (``pipelines/study.py hills``); it grows as the root of
 the ratio of the slopes across and along the waves."""
 
 _HELD = 0.13
 """Error of the force of adhesive hills in contact, over their pull-off forces: that of one paraboloid at Tabor number 2
-(``pipelines/versus_adhesive_bem.py``; ``pipelines/adhesive_hills.py`` holds it against maps)."""
+(``pipelines/study.py versus_adhesive_bem``; ``pipelines/study.py adhesive_hills`` holds it against maps)."""
 
 WARNED_SHARE, WARNED_FRACTION = 0.1, 0.1
 MARKED_SHARE, MARKED_FRACTION = 0.25, 0.15
@@ -37,7 +37,7 @@ HILLS_MARKED_FRACTION = 0.3
 def coupling_error(
     contact_fraction: Floats, crowding: Floats, ensemble: Ensemble | None = None, order: int = 2
 ) -> Floats:
-    """Return about the largest relative error of the force [1], as measured (``pipelines/versus_bem.py``).
+    """Return about the largest relative error of the force [1], as measured (``pipelines/study.py versus_bem``).
 
     ``contact_fraction`` is the summed contact area over the nominal area, ``crowding`` about the error by contacts near
     to each other at low contact fractions; shape (n,) each. ``ensemble`` are the asperities, on a plane where it is

@@ -13,7 +13,7 @@ _NEIGHBOURS = 6  # neighbours of a point of a hexagonal lattice
 
 class Coefficients(NamedTuple):
     """The error of the force at given separation from the deformed mean plane, over the force of boundary elements and
-    over the square root of the contact fraction (``pipelines/versus_bem.py``).
+    over the square root of the contact fraction (``pipelines/study.py versus_bem``).
     """
 
     low: float
@@ -40,7 +40,7 @@ and size exceeded in one case of ten, against JKR asperities coupled in pairs (`
 
 HILLS = Coefficients(low=0.5, typical=3.0, estimate=10.0)
 """Coefficients of the hills of a map, which without interaction overlap their neighbours: the force is too high
-(``pipelines/hills.py``)."""
+(``pipelines/study.py hills``)."""
 
 OF_ORIGIN: dict[Origin, Coefficients] = {"asperities": ASPERITIES, "summits": SUMMITS, "hills": HILLS}
 

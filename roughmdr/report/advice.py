@@ -19,7 +19,7 @@ def advice_on(scene: str, resolution_error: float) -> str:
     """Return the advice on a scene, as TOML, whose asperities are found on maps; empty for others.
 
     ``resolution_error`` is that of the force by the resolution of the map [1]. The figures are measured
-    (``pipelines/hills.py``, ``pipelines/adhesive_hills.py``).
+    (``pipelines/study.py hills``, ``pipelines/study.py adhesive_hills``).
     """
     table = parse_toml(scene)
     asperities = table.get("asperities", {})

@@ -9,7 +9,7 @@ from oracles.exact_contact import ExactContact
 from oracles.jkr_power_law import JkrPowerLaw
 from oracles.multiprecision import mp
 from scenes import ensemble
-from studies.asperity_error import measure as asperity_error
+from studies import asperity_error
 from studies.asperity_error.asperities import DRAW
 from studies.asperity_error.judge import ForceError, random_error
 

@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 import xarray as xr
 from forms import COMPILED, large
-from stated_error import STUDY
+from studies.stated_error import STUDY
 from studies.stated_error import judge as study
 from studies.stated_error.report import report
 from studies.stated_error.scenes import ESTIMATORS, RandomScene, scene

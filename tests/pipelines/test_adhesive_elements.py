@@ -9,11 +9,11 @@ from carried_out import CarriedOut, carried_out
 from forms import large
 from oracles.adhesive_elements import AdhesiveMap
 from oracles.boundary_elements import HeightMap
+from studies.versus_adhesive_bem import STUDY
 from studies.versus_adhesive_bem.cases import DETACHED, MODELS, WORK, Case, law
 from studies.versus_adhesive_bem.judge import judge
 from studies.versus_adhesive_bem.measure import QUICK, by_elements
 from studies.versus_bem.ensembles import height_map
-from versus_adhesive_bem import STUDY
 
 import roughmdr as rm
 

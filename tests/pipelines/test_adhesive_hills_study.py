@@ -5,8 +5,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from adhesive_hills import STUDY
 from carried_out import CarriedOut, carried_out
+from studies.adhesive_hills import STUDY
 from studies.adhesive_hills.cases import QUICK, Adhesive
 from studies.adhesive_hills.judge import judge
 from studies.adhesive_hills.measure import METHODS

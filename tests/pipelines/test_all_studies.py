@@ -1,20 +1,19 @@
 """The report of all studies: how long each took, what its reduced form leaves out, and which failed."""
 
-from importlib import import_module
 from pathlib import Path
 
-import all_studies
 import pytest
+import study
 import xarray as xr
-from all_studies import Done, main
 from click.testing import CliRunner
-from left_out import STUDY
+from studies.left_out import STUDY
+from study import MODULES, Done, main
 
 
 def reported(monkeypatch: pytest.MonkeyPatch, folder: Path, *options: str) -> list[str]:
     """Run two studies, of which the first is not there, and return the lines of the report."""
-    monkeypatch.setattr(all_studies, "NAMES", ("no_such_study", "left_out"))
-    done = CliRunner().invoke(main, ["-o", str(folder), *options])
+    monkeypatch.setattr(study, "TOGETHER", ("no_such_study", "left_out"))
+    done = CliRunner().invoke(main, ["all", "-o", str(folder), *options])
     assert done.exit_code == 1
     assert "failed: no_such_study" in done.output
     return (folder / "report.md").read_text().splitlines()
@@ -27,7 +26,7 @@ def test_times_and_what_is_left_out_stand_at_the_head(monkeypatch: pytest.Monkey
             text = text.replace("Reduced form: 6 of 144 cases.\n\n", "")
         return Done(name, 3.4, text) if name == "left_out" else Done(name, 0.2, "")
 
-    monkeypatch.setattr(all_studies, "run", run)
+    monkeypatch.setattr(study, "run", run)
     quick, full = (reported(monkeypatch, tmp_path, *options) for options in (["--quick"], []))
     assert quick[2] == "4 s, in reduced forms; `make studies-full` carries out all of each."
     assert quick[4:8] == [
@@ -51,9 +50,14 @@ def test_a_study_that_fails_keeps_no_other_from_the_report(monkeypatch: pytest.M
         assert result.attrs["comment"] == f"Reduced form: {STUDY.reduced}."
 
 
-def test_every_study_says_what_its_reduced_form_leaves_out() -> None:
-    for script in Path(all_studies.__file__).parent.glob("*.py"):
-        study = getattr(import_module(script.stem), "STUDY", None)
-        if script.stem != "all_studies":
-            assert study is not None, script
-            assert len(study.reduced) > 10, script
+@pytest.mark.parametrize("name", MODULES)
+def test_every_study_says_what_its_reduced_form_leaves_out(name: str) -> None:
+    assert study.study(name).name == name
+    assert len(study.study(name).reduced) > 10
+
+
+def test_every_module_with_a_study_is_named() -> None:
+    folder = Path(study.__file__).parent
+    holders = (path for path in folder.rglob("*.py") if "\nSTUDY = " in path.read_text())
+    names = (path.parent if path.stem == "__init__" else path.with_suffix("") for path in holders)
+    assert {".".join(path.relative_to(folder).parts) for path in names} == set(MODULES.values())

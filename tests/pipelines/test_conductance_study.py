@@ -5,7 +5,7 @@ from collections.abc import Iterator
 import numpy as np
 import pytest
 from carried_out import CarriedOut, carried_out
-from conductance import STUDY
+from studies.conductance import STUDY
 from studies.conductance.report import bounded, errors
 
 

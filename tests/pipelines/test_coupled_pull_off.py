@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import xarray as xr
-from coupled_pull_off import STUDY
+from studies.coupled_pull_off import STUDY
 from studies.coupled_pull_off.measure import beyond_pairs, change
 from studies.coupled_pull_off.surfaces import (
     JUMP_ON_RADIUS,

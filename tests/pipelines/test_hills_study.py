@@ -6,8 +6,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 from carried_out import CarriedOut, carried_out
-from hills import STUDY
 from oracles.free_elements import FreeMap
+from studies.hills import STUDY
 from studies.hills.convergence import FINEST, SCALES
 from studies.hills.errors import errors_of, errors_on_files, groups, rms, within
 from studies.hills.maps import QUICK, MapCase

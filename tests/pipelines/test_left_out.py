@@ -7,8 +7,7 @@ from typing import NamedTuple
 import numpy as np
 import pytest
 import xarray as xr
-from left_out import STUDY
-from studies.left_out import PARTS, SCENES, scene_of
+from studies.left_out import PARTS, SCENES, STUDY, scene_of
 
 import roughmdr as rm
 from roughmdr.aggregate import compute

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 import xarray as xr
 from forms import large
-from stability import STUDY
+from studies.stability import STUDY
 from studies.stability.cases import AXES, Case, design
 from studies.stability.judge import (
     CONTROLS,

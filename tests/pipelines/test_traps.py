@@ -4,8 +4,7 @@ from pathlib import Path
 
 import pytest
 import xarray as xr
-from studies.traps import KINDS, measure, report, traps, violations
-from traps import STUDY
+from studies.traps import KINDS, STUDY, measure, report, traps, violations
 
 
 def test_every_kind_of_mistake_is_made_and_the_scenes_are_always_the_same() -> None:

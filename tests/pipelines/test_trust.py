@@ -7,11 +7,11 @@ import pytest
 import xarray as xr
 from carried_out import CarriedOut, carried_out
 from oracles.gaussian_maps import gaussian_map
+from studies.trust import STUDY
 from studies.trust.report import errors, judge
 from studies.trust.scenes import CASES, QUICK
 from studies.trust.truth import Path as FlatPath
 from studies.trust.truth import by_boundary_elements, by_pairs, by_range_of_adhesion, refined
-from trust import STUDY
 
 import roughmdr as rm
 from roughmdr.spectrum import SelfAffine

@@ -6,10 +6,10 @@ from collections.abc import Iterator
 import numpy as np
 import pytest
 from carried_out import CarriedOut, carried_out
+from studies.versus_bem import STUDY
 from studies.versus_bem.ensembles import SIZE, Case, contact_radii, distances, height_map
 from studies.versus_bem.judge import errors, estimates, grid_errors, groups
 from studies.versus_bem.measure import QUICK, overlaps, separations
-from versus_bem import STUDY
 
 import roughmdr as rm
 

@@ -3,10 +3,9 @@
 import numpy as np
 import pytest
 import xarray as xr
-from studies.work_precision import measure
-from studies.work_precision.measure import cheapest, points_of
+from studies import work_precision
+from studies.work_precision import TARGETS, cheapest, points_of, report
 from studies.work_precision.points import QUANTITIES, Method, Point
-from studies.work_precision.report import TARGETS, report
 from studies.work_precision.surface import SURFACES, simulate
 from studies.work_precision.tip import DEPTHS
 
@@ -14,11 +13,11 @@ from studies.work_precision.tip import DEPTHS
 @pytest.fixture(scope="module")
 def result() -> xr.Dataset:
     """The numbers of the quick form without the root finder on surfaces, which takes half of the time."""
-    tips, surfaces = measure.PARTS
+    tips, surfaces = work_precision.PARTS
     surfaces = surfaces._replace(methods=tuple(each for each in surfaces.methods if each.name != "brentq"))
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(measure, "PARTS", (tips, surfaces))
-        return measure.measure(True)
+        patch.setattr(work_precision, "PARTS", (tips, surfaces))
+        return work_precision.measure(True)
 
 
 def points(result: xr.Dataset, scene: str, method: str) -> tuple[np.ndarray, np.ndarray]:
@@ -108,11 +107,11 @@ def test_a_method_joins_by_one_entry(monkeypatch: pytest.MonkeyPatch) -> None:
     def exact_for_nothing(scene: object, exact: object, quick: bool) -> list[Point]:
         return [Point(1.0, (0.0, 0.0, 0.0), 0.0, 0.0)]
 
-    part = measure.PARTS[0]._replace(methods=(Method("an oracle", "-", exact_for_nothing), *part_methods()))
-    monkeypatch.setattr(measure, "PARTS", (part,))
-    told = report(measure.measure(True))
+    part = work_precision.PARTS[0]._replace(methods=(Method("an oracle", "-", exact_for_nothing), *part_methods()))
+    monkeypatch.setattr(work_precision, "PARTS", (part,))
+    told = report(work_precision.measure(True))
     assert f"| {TIP} | an oracle: 0 ms (0) | an oracle" in told
 
 
 def part_methods() -> tuple[Method, ...]:
-    return tuple(method for method in measure.PARTS[0].methods if method.name == "closed forms")
+    return tuple(method for method in work_precision.PARTS[0].methods if method.name == "closed forms")

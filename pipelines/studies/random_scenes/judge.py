@@ -11,13 +11,13 @@ import numpy as np
 import tomli_w
 import xarray as xr
 from numpy.typing import NDArray
-from studies.random_scenes.curves import DONE, FORCES, ROUNDING, Curves, curves_of, returns
 
 import roughmdr as rm
 from roughmdr import errors
 from roughmdr.errors import FailedRuns, LimitWarning, RoughmdrError, Unfinished
 from roughmdr.scene import Scene, read
 from roughmdr.stages.viscoelastic import Viscoelastic
+from studies.random_scenes.curves import DONE, FORCES, ROUNDING, Curves, curves_of, returns
 
 COMPUTED, FAILED, REFUSED = OUTCOMES = ("computed", "a run failed", "refused")
 _CONDUCTION = ("conductance_radius", "thermal_conductance", "electrical_conductance")

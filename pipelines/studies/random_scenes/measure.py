@@ -15,11 +15,11 @@ from typing import Any
 
 import xarray as xr
 from hypothesis import HealthCheck, Phase, given, seed, settings
+
+from roughmdr.shapes import SCENE_SHAPES
 from studies.random_scenes.judge import judge
 from studies.random_scenes.scenes import scenes, write_inputs
 from studies.study import named
-
-from roughmdr.shapes import SCENE_SHAPES
 
 SEEDS = (2026, 2027)
 """One for each process."""

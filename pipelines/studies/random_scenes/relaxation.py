@@ -1,9 +1,9 @@
 """Draws what makes a scene viscoelastic: times and speeds of any size, and a path that falls and rises once."""
 
 from hypothesis import strategies as st
-from studies.random_scenes.numbers import Draw, Table, number, power_of_ten
 
 from roughmdr.variables import CONDUCTANCES, CURVE_VARIABLES
+from studies.random_scenes.numbers import Draw, Table, number, power_of_ten
 
 _VARIABLES = sorted(name for name in CURVE_VARIABLES | CONDUCTANCES if name != "stiffness" and "energy" not in name)
 

@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 import xarray as xr
+
 from studies.random_scenes.judge import OUTCOMES
 from studies.random_scenes.measure import KINDS
 from studies.study import table

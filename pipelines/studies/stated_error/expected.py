@@ -13,7 +13,6 @@ from functools import cache, cached_property, partial
 from itertools import groupby, pairwise
 
 import numpy as np
-from studies.stated_error.contacts import branch_numbers
 
 from roughmdr.asperity.contact import Contact
 from roughmdr.ensemble.nodes import Nodes, Rule
@@ -25,6 +24,7 @@ from roughmdr.kernels.elementwise import apply, apply_all
 from roughmdr.numerics.arguments import Floats
 from roughmdr.scene import Scene
 from roughmdr.shapes import SHAPES
+from studies.stated_error.contacts import branch_numbers
 
 ORDERS = (16, 24, 36, 54)
 """Nodes on each panel over shape parameters, from coarse to fine."""

@@ -14,15 +14,15 @@ import numpy as np
 import xarray as xr
 from oracles.dugdale import Array
 from oracles.multiprecision import mp
-from studies.stated_error.contacts import ContactPath, contact_path
-from studies.stated_error.expected import ORDERS, ExpectedForce
-from studies.stated_error.scenes import RandomScene, scene
-from studies.study import named
 
 import roughmdr as rm
 from roughmdr.numerics.arguments import Floats
 from roughmdr.scene import Scene, read
 from roughmdr.shapes import SHAPES
+from studies.stated_error.contacts import ContactPath, contact_path
+from studies.stated_error.expected import ORDERS, ExpectedForce
+from studies.stated_error.scenes import RandomScene, scene
+from studies.study import named
 
 SCENES, QUICK = 200, 60
 FINER = 10.0

@@ -4,6 +4,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 import xarray as xr
+
 from studies.stated_error.scenes import scene
 from studies.study import table
 

@@ -12,15 +12,15 @@ import numpy as np
 import tomli_w
 import xarray as xr
 from click.testing import CliRunner
+
+import roughmdr as rm
+from roughmdr.cli import main
+from roughmdr.scene import read
 from studies.study import named
 from studies.trust.scenes import CASES, QUICK, Case
 from studies.trust.truth import MAPS, by_boundary_elements, by_pairs, by_range_of_adhesion, of_map
 from studies.trust.truth import Path as FlatPath
 from studies.versus_bem.maps import write_map
-
-import roughmdr as rm
-from roughmdr.cli import main
-from roughmdr.scene import read
 
 _TOLD = ("contact", "model error", "trust", "warning")
 

@@ -5,9 +5,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
-from studies.study import table
 
 from roughmdr.numerics.arguments import Floats
+from studies.study import table
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

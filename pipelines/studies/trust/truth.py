@@ -11,12 +11,12 @@ import numpy as np
 import xarray as xr
 from oracles.boundary_elements import HeightMap
 from oracles.pairwise import Paraboloids, periodic_green
-from studies.trust.scenes import Surface
-from studies.versus_bem.ensembles import distances, height_map, side
 
 import roughmdr as rm
 from roughmdr.aggregate.tabor import ASSUMED_RANGE
 from roughmdr.numerics.arguments import Floats
+from studies.trust.scenes import Surface
+from studies.versus_bem.ensembles import distances, height_map, side
 
 _LIFTED = 0.3  # of the deepest overlap: by less than this the pressure of some contacts lifts the surface between them
 _LOADING, _UNLOADING = 60, 200  # steps of a path that pairs are taken along

@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 import xarray as xr
+
 from studies.study import table
 from studies.versus_bem.judge import FACTOR, GROUPS, grid_errors, groups, signed_errors, without_grid
 

@@ -7,13 +7,13 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 from oracles.gaussian_maps import gaussian_map
-from studies.versus_bem.ensembles import SIZE
 
 import roughmdr as rm
 from roughmdr.numerics.arguments import Floats
 from roughmdr.spectrum import SelfAffine
 from roughmdr.storage.labelled import Labelled
 from roughmdr.storage.netcdf_writing import write_netcdf
+from studies.versus_bem.ensembles import SIZE
 
 _SLOPE = 1e-3  # r.m.s., small: nothing depends on it
 

@@ -16,12 +16,12 @@ import numpy as np
 import xarray as xr
 from oracles.boundary_elements import HeightMap
 from oracles.contact_areas import by_perimeter, label_contacts, of_half_ellipsoids
-from studies.study import named
-from studies.versus_bem.ensembles import SIZE, Case, contact_radii, distances
-from studies.versus_bem.maps import MapCase
 
 import roughmdr as rm
 from roughmdr.numerics.arguments import Floats
+from studies.study import named
+from studies.versus_bem.ensembles import SIZE, Case, contact_radii, distances
+from studies.versus_bem.maps import MapCase
 
 MODULUS = 1e9  # [Pa], E*
 FRACTIONS = np.array([0.001, 0.003, 0.01, 0.03, 0.05, 0.1, 0.2, 0.3])

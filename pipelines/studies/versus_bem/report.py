@@ -4,11 +4,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 import xarray as xr
+
+from roughmdr.model_error.interaction import ASPERITIES, SUMMITS, interaction_error
 from studies.study import table
 from studies.versus_bem.coupled import draw_models, report_coupled
 from studies.versus_bem.judge import FACTOR, GROUPS, errors, estimates, grid_errors, groups, judge
-
-from roughmdr.model_error.interaction import ASPERITIES, SUMMITS, interaction_error
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

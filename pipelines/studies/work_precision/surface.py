@@ -10,7 +10,6 @@ from unittest.mock import patch
 import numpy as np
 from oracles.expected_paraboloids import Rough
 from oracles.plain_sums import Sums, with_brentq, with_numpy
-from studies.work_precision.points import Curve, Method, Point, Points, Reference, each_setting, root_mean_square
 
 from roughmdr.aggregate import LoadSeparation
 from roughmdr.aggregate.totals import AREA, FORCE
@@ -22,6 +21,7 @@ from roughmdr.expected.node import MeanProblem, set_up, totals_of
 from roughmdr.runner.backend import Backend
 from roughmdr.runner.run import execute
 from roughmdr.scene import Scene, read
+from studies.work_precision.points import Curve, Method, Point, Points, Reference, each_setting, root_mean_square
 
 UM, MODULUS, WORK = 1e-6, 4e6, 0.05
 COUNT = 1000  # asperities of a realisation

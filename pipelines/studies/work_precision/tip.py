@@ -10,13 +10,13 @@ from oracles.jkr import Asperity
 from oracles.multiprecision import mp
 from oracles.profiles import profile_of
 from scipy.optimize import brentq, minimize_scalar
-from studies.work_precision.points import Curve, Method, Reference, each_setting
 
 import roughmdr as rm
 from roughmdr.kernels.adhesion import release_stretch
 from roughmdr.numerics.arguments import Floats
 from roughmdr.shapes import Shape
 from roughmdr.springs import Springs
+from studies.work_precision.points import Curve, Method, Reference, each_setting
 
 MODULUS, WORK = 4e6, 0.05  # of a soft rubber against a rigid body [Pa], [J/m^2]
 DEPTHS = np.append(np.geomspace(1e-3, 1.0, 20), np.geomspace(1.0, 11.0, 181)[1:])  # above the fold, over its depth

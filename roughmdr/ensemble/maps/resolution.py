@@ -85,7 +85,7 @@ def hills_error(points_per_wave: float) -> float:
     """Return the relative deficit of the force of hills by too few points.
 
     Measured on band-limited maps at 2 to 12 points a shortest wave, the force between 0.3 and 20 % contact, in the mean
-    (``pipelines/hills.py``): 10 to 13 % at 4.2 points a wavelength (``hills.find``), 4 to 5 % at 5.7, 2 % at 7.
+    (``pipelines/study.py hills``): 10 to 13 % at 4.2 points a wavelength (``hills.find``), 4 to 5 % at 5.7, 2 % at 7.
     """
     return min(_HILLS / points_per_wave**3, 1.0)
 
@@ -95,7 +95,7 @@ def border_error(wavelength: float, side_x: float, side_y: float) -> float:
     unit: the share of a strip of one wavelength.
 
     Against boundary elements of a profilometer map, 0.3 to 20 % contact, 8 to 27 % were missing where this is 28 %, and
-    15 to 34 % where it is 24 %, at light contact; of a film 9 % where it is 12 % (``pipelines/hills.py``).
+    15 to 34 % where it is 24 %, at light contact; of a film 9 % where it is 12 % (``pipelines/study.py hills``).
     """
     return min(2.0 * wavelength * (side_x + side_y) / (side_x * side_y), 1.0)
 

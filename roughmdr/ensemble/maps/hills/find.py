@@ -21,7 +21,7 @@ from roughmdr.shapes.mdr_table.shape import rising
 
 _WAVELENGTH = 6.6
 """Wavelength over the ratio of r.m.s. slope to r.m.s. Laplacian: 2 pi where all waves are equally long, and 5 % more
-here, as the sizes below were tuned with it (``pipelines/hills.py``)."""
+here, as the sizes below were tuned with it (``pipelines/study.py hills``)."""
 SCALES = 20
 """Default number of contact radii in the table of a hill: each is 1.18 times the one before."""
 SMALLEST, LARGEST = 0.04, 1.0

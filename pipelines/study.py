@@ -1,21 +1,30 @@
-"""Run all studies one after the other and write a report: python pipelines/all_studies.py -o results/studies."""
+"""Make a study, a figure or a benchmark: python pipelines/study.py NAME [--quick]; of all studies together with all."""
 
 import os
 import subprocess
 import sys
 import time
+from importlib import import_module
 from pathlib import Path
 from typing import NamedTuple
 
 import click
-from studies.study import OUTPUT, QUICK, REDUCED, table
+from studies.study import REDUCED, Study, table
 
 from roughmdr.storage.files import replace_atomically
 
-NAMES = (
+TOGETHER = (
     "work_precision", "coupling", "stability", "left_out", "stated_error", "random_scenes", "versus_bem",
     "conductance", "versus_adhesive_bem", "coupled_pull_off", "hills", "adhesive_hills", "spectrum", "trust", "traps",
 )  # fmt: skip
+"""Studies that "all" carries out, one after the other."""
+MODULES = {
+    **{name: f"studies.{name}" for name in (*TOGETHER, "accuracy", "asperity_error")},
+    **{name: f"figures.{name}" for name in ("adhesion_range", "interaction", "springs", "summits")},
+    **{name: f"benchmarks.{name}" for name in ("batch", "foreseen", "scaling")},
+    "one_asperity": "figures.one_asperity_pictures",
+}
+"""Modules that hold a ``STUDY``, by its name."""
 
 
 class Done(NamedTuple):
@@ -38,9 +47,16 @@ class Done(NamedTuple):
         return f"{self.text}\n![{self.name}]({self.name}.png)\n" if self.text else f"## {self.name}\n\nfailed\n"
 
 
+def study(name: str) -> Study:
+    """Return a study by its name."""
+    found = import_module(MODULES[name]).STUDY
+    assert isinstance(found, Study)
+    return found
+
+
 def run(name: str, output: Path, quick: bool) -> Done:
     """Run a study in a process of its own, where BLAS has one thread: several take longer for small matrices."""
-    command = [sys.executable, str(Path(__file__).with_name(f"{name}.py")), "-o", str(output), *["--quick"] * quick]
+    command = [sys.executable, __file__, name, "-o", str(output), *["--quick"] * quick]
     started = time.perf_counter()
     environment = {**os.environ, "OPENBLAS_NUM_THREADS": "1"}
     done = subprocess.run(command, env=environment, stdout=subprocess.PIPE, text=True, check=False)
@@ -55,14 +71,11 @@ def report(done: list[Done], quick: bool) -> str:
     return "\n".join([head, times, *(one.part for one in done)])
 
 
-@click.command(help=__doc__)
-@OUTPUT
-@QUICK
-def main(output: Path, quick: bool) -> None:
-    """Write NAME.nc and NAME.png of each study, and report.md after each; go on where one fails."""
+def run_all(output: Path, quick: bool) -> None:
+    """Write the files of each study, and report.md after each; go on where one fails."""
     output.mkdir(parents=True, exist_ok=True)
     done = list[Done]()
-    for name in NAMES:
+    for name in TOGETHER:
         done.append(run(name, output, quick))
         click.echo(f"{name}: {done[-1].seconds:.0f} s", err=True)
         with replace_atomically(output / "report.md") as temporary:
@@ -71,6 +84,19 @@ def main(output: Path, quick: bool) -> None:
     failed = [one.name for one in done if not one.text]
     if failed:
         raise click.ClickException(f"failed: {', '.join(failed)}")
+
+
+@click.command()
+@click.argument("name", type=click.Choice([*MODULES, "all"]))
+@click.option("-o", "--output", type=click.Path(file_okay=False, path_type=Path), default=Path("results/studies"),
+              show_default=True, help="Folder to write to.")  # fmt: skip
+@click.option("--quick", is_flag=True, help="A reduced form, with rough figures, that says what it leaves out.")
+def main(name: str, output: Path, quick: bool) -> None:
+    """Write NAME.nc and NAME.png, and print what was found; of all studies together, report.md as well."""
+    if name == "all":
+        run_all(output, quick)
+    else:
+        click.echo(study(name).carry_out(output, quick), nl=False)
 
 
 if __name__ == "__main__":

@@ -1,4 +1,4 @@
-"""Scenes drawn at random, each refused in words or physically right: python pipelines/random_scenes.py."""
+"""Scenes drawn at random, each refused in words or physically right."""
 
 from studies.random_scenes.measure import FULL, QUICK, QUICK_COHESIVE, measure
 from studies.random_scenes.report import draw, report
@@ -12,6 +12,3 @@ STUDY = Study(
     report,
     f"{QUICK} of {FULL} scenes; adhesion of finite range on the shapes {' and '.join(QUICK_COHESIVE)} alone",
 )
-
-if __name__ == "__main__":
-    STUDY.command()

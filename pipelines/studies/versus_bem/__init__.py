@@ -1,4 +1,4 @@
-"""Independent asperities against boundary elements: python pipelines/versus_bem.py."""
+"""Independent asperities against boundary elements."""
 
 from studies.study import Study
 from studies.versus_bem.measure import CASES, QUICK, measure
@@ -12,6 +12,3 @@ STUDY = Study(
     report,
     f"{len(QUICK)} smaller cases in place of {len(CASES)}, on coarser grids",
 )
-
-if __name__ == "__main__":
-    STUDY.command()

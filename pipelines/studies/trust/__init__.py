@@ -1,4 +1,4 @@
-"""The stated error of the force against the true one, scene by scene: python pipelines/trust.py."""
+"""The stated error of the force against the true one, scene by scene."""
 
 from studies.study import Study
 from studies.trust.measure import measure
@@ -13,6 +13,3 @@ STUDY = Study(
     report,
     f"{len(QUICK)} of {len(CASES)} scenes",
 )
-
-if __name__ == "__main__":
-    STUDY.command()
