@@ -58,10 +58,7 @@ def measure(quick: bool) -> xr.Dataset:
     force, fraction = np.moveaxis(np.array(laws), 1, 0)
     over = ("model", "step")
     return xr.Dataset(
-        {
-            "force": (over, force, named("force", "N")),
-            "contact_fraction": (over, fraction, named("contact fraction")),
-        },
+        {"force": (over, force, named("force", "N")), "contact_fraction": (over, fraction, named("contact fraction"))},
         {"model": list(MODELS), "separation": ("step", separation, named("separation", "m"))},
     )
 

@@ -13,7 +13,7 @@ from click.testing import CliRunner
 from oracles.gaussian_maps import gaussian_map
 from scenes import scene
 from scipy.special import ellipe, ellipk
-from studies.versus_bem.maps import write_map
+from studies.versus_bem.ensembles import write_map
 
 import roughmdr as rm
 from roughmdr.cli import main

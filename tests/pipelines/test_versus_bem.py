@@ -6,10 +6,8 @@ from collections.abc import Iterator
 import numpy as np
 import pytest
 from carried_out import CarriedOut, carried_out
-from studies.versus_bem import STUDY
-from studies.versus_bem.ensembles import SIZE, Case, contact_radii, distances, height_map
-from studies.versus_bem.judge import errors, estimates, grid_errors, groups
-from studies.versus_bem.measure import QUICK, overlaps, separations
+from studies.versus_bem import STUDY, errors, estimates, grid_errors, groups, touch
+from studies.versus_bem.ensembles import QUICK, SIZE, Case, contact_radii, distances, height_map, separations
 
 import roughmdr as rm
 
@@ -66,8 +64,8 @@ def test_the_map_is_periodic_and_as_high_as_its_asperities() -> None:
     assert top - (SIZE / 64) ** 2 <= found.max() <= top
 
 
-def test_overlaps_at_random_places_are_poissons() -> None:
-    asperities = Case("random", "paraboloid", 2000, 0.3, 64, 1).generate()
-    share, expected = overlaps(np.full(2000, 0.1 * SIZE / math.sqrt(2000)), distances(asperities))
-    assert expected == pytest.approx(-math.expm1(-0.04 * math.pi), rel=1e-3)
-    assert share == pytest.approx(expected, rel=0.2)
+def test_contacts_touch_where_their_circles_meet() -> None:
+    distance = np.array([[np.inf, 3.0, 1.0], [3.0, np.inf, 2.0], [1.0, 2.0, np.inf]])
+    assert touch(np.array([0.6, 0.1, 0.5]), distance)
+    assert not touch(np.array([0.5, 0.1, 0.4]), distance)
+    assert not touch(np.array([1.5, 0.1, 0.0]), distance)

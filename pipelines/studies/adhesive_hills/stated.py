@@ -55,8 +55,7 @@ def measure_stated(maps: dict[str, list[Case]]) -> xr.Dataset:
     words = ("r.m.s. error", "largest error", "stated error", "share of steps within their stated error")
     columns = zip(Stated._fields, zip(*found, strict=True), words, strict=True)
     return xr.Dataset(
-        {f"error_{name}": ("map", list(values), named(word)) for name, values, word in columns},
-        {"set": ("map", names)},
+        {f"error_{name}": ("map", list(values), named(word)) for name, values, word in columns}, {"set": ("map", names)}
     )
 
 

@@ -9,8 +9,7 @@ import xarray as xr
 from benchmarks.process import peak_memory
 
 from studies.coupling.methods import coupled
-from studies.versus_bem.ensembles import Case
-from studies.versus_bem.measure import separations
+from studies.versus_bem.ensembles import Case, separations
 
 COUNTS = {False: (100, 200, 300, 500, 1000, 3000, 10_000, 100_000), True: (100, 300, 1000)}
 _MOST_DENSE = 3000

@@ -14,9 +14,8 @@ from oracles.boundary_elements import HeightMap
 import roughmdr as rm
 from roughmdr.interaction import solve
 from roughmdr.numerics.arguments import Floats
-from studies.versus_bem.ensembles import SIZE, Case, height_map
-from studies.versus_bem.judge import without_grid
-from studies.versus_bem.measure import MODULUS, separations
+from studies.versus_bem import without_grid
+from studies.versus_bem.ensembles import MODULUS, SIZE, Case, height_map, separations
 
 FRACTIONS = np.array([0.01, 0.02, 0.03, 0.05])
 GRIDS = {False: (64, 128, 256, 512, 1024), True: (64, 128)}

@@ -9,8 +9,7 @@ import numpy as np
 import xarray as xr
 
 import roughmdr as rm
-from studies.versus_bem.ensembles import Case
-from studies.versus_bem.measure import MODULUS, separations
+from studies.versus_bem.ensembles import MODULUS, Case, separations
 
 SHAPES = ("paraboloid", "cone", "quartic")
 _COUNTS, _COUNTS_QUICK = (60, 250, 700), (60,)

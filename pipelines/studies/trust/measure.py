@@ -20,7 +20,7 @@ from studies.study import named
 from studies.trust.scenes import CASES, QUICK, Case
 from studies.trust.truth import MAPS, by_boundary_elements, by_pairs, by_range_of_adhesion, of_map
 from studies.trust.truth import Path as FlatPath
-from studies.versus_bem.maps import write_map
+from studies.versus_bem.ensembles import write_map
 
 _TOLD = ("contact", "model error", "trust", "warning")
 

@@ -1,14 +1,292 @@
-"""Independent asperities against boundary elements."""
+"""Asperities against boundary elements at the same separations: forces, areas, numbers of contacts, and run times.
 
-from studies.study import Study
-from studies.versus_bem.measure import CASES, QUICK, measure
-from studies.versus_bem.report import draw, report
+Asperities are independent, displaced by the mean pressure, or coupled in pairs to first and second order.
+"""
+
+import itertools
+import math
+import time
+import warnings
+from concurrent.futures import ProcessPoolExecutor
+from multiprocessing import get_context
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import xarray as xr
+from numpy.typing import NDArray
+from oracles.boundary_elements import HeightMap
+from oracles.contact_areas import by_perimeter, label_contacts, of_half_ellipsoids
+
+import roughmdr as rm
+from roughmdr.model_error.interaction import ASPERITIES, SUMMITS, interaction_error
+from roughmdr.numerics.arguments import Floats
+from studies.comparison import HELD, PAIRS, held, in_cases, law_or_nan, median_and_largest, panels
+from studies.study import Study, named, table
+from studies.versus_bem.ensembles import (
+    CASES,
+    FINE,
+    MODULUS,
+    QUICK,
+    SIZE,
+    Case,
+    MapCase,
+    contact_radii,
+    distances,
+    separations,
+)
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+FRACTIONS = np.array([0.001, 0.003, 0.01, 0.03, 0.05, 0.1, 0.2, 0.3])
+_FINE_FRACTION = 0.1  # the largest contact fraction on the finest grids
+MODELS: dict[str, Any] = {
+    "force": None, "force_mean": "mean_field", "force_first": PAIRS[1], "force_second": PAIRS[2],
+}  # fmt: skip
+"""Interactions, by the names of their forces."""
+_LABELS = dict(zip(MODELS, ("independent", "mean field", "order 1", "order 2"), strict=True))
+GROUPS = ("few contacts", "random", "separated", "square", "nayak", "map", "crowd")
+FEW_CONTACTS = 4.0
+"""Up to so many, contacts of the patch and of its periodic images are a lattice, wherever they are placed."""
+_MIN_POINTS = 2.5  # of the grid a contact radius; below, boundary elements are off by a per cent and more
+_NEGLIGIBLE = 1e-4  # least error that is told apart from none
+_FINE_SEED = 11  # and above, of the cases on the finest grids
+_BINS = ((0.0, 0.004), (0.004, 0.03), (0.03, 0.15), (0.15, 1.0))
+_FINER_BINS = tuple(itertools.pairwise((0.0, 0.004, 0.03, 0.06, 0.15, 1.0)))
+_WORKERS = 2
+_NAMES = {
+    "contact_fraction": ("summed contact area of independent asperities over the nominal area", "1"),
+    "contact_count": ("contacts of independent asperities", "1"),
+    "force": ("force of independent asperities", "N"),
+    "force_bem": ("force of boundary elements, infinite in full contact", "N"),
+    "contact_fraction_bem": ("contact fraction of boundary elements", "1"),
+    "force_coarse": ("force of boundary elements with half as many points a side", "N"),
+    "force_mean": ("force of asperities displaced by the mean pressure", "N"),
+    "force_first": ("force of coupled asperities, to first order", "N"),
+    "force_second": ("force of coupled asperities, to second order", "N"),
+    "contact_fraction_second": ("contact fraction to second order", "1"),
+    "contact_count_second": ("contacts to second order", "1"),
+    "contact_count_bem": ("contacts of boundary elements", "1"),
+    "stated": ("stated model error to second order", "1"),
+    "stated_first": ("stated model error to first order", "1"),
+    "stated_alone": ("stated model error of independent asperities with positions", "1"),
+    "seconds_second": ("run time of a load to second order", "s"),
+    "seconds_bem": ("run time of a load by boundary elements", "s"),
+    "radius_points": ("root mean square of the contact radii over the spacing of the grid", "1"),
+}
+_LAW = ("force", "contact_fraction", "contact_count", "model_error_curve")
+
+
+def press(surface: HeightMap, separation: float, separated_paraboloids: bool) -> tuple[float, float, float, float]:
+    """Return force, contact fraction, contacts and run time of boundary elements at a separation [m].
+
+    Areas of separated paraboloids are those by their pressure. NaN where elements do not converge, as next to full
+    contact.
+    """
+    started = time.perf_counter()
+    try:
+        force = surface.press(separation).force
+    except rm.OutOfRange:
+        return math.nan, math.nan, math.nan, math.nan
+    seconds = time.perf_counter() - started
+    if not math.isfinite(force):
+        return force, 1.0, 1.0, seconds
+    area = of_half_ellipsoids if separated_paraboloids else by_perimeter
+    return force, area(surface.pressure), np.unique(label_contacts(surface.pressure)).size - 1, seconds
+
+
+def law_by(ensemble: xr.Dataset, separation: Floats, interaction: Any) -> dict[str, Floats]:
+    """Return the law at separations [m], in falling order; NaN from where it has more contact than the patch."""
+    for steps in range(separation.size, 0, -1):
+        found = law_or_nan(ensemble, separation[:steps], *_LAW, effective_modulus=MODULUS, interaction=interaction)
+        if np.isfinite(found[0]).any():
+            break
+    return {name: np.pad(each, (0, separation.size - each.size), constant_values=np.nan)
+            for name, each in zip(_LAW, found, strict=True)}  # fmt: skip
+
+
+def touch(radius: Floats, distance: Floats) -> bool:
+    """Return whether the circle of a contact meets another."""
+    reach = radius[:, None] + radius[None, :]
+    return bool(np.any(distance < np.where((radius[:, None] > 0.0) & (radius[None, :] > 0.0), reach, 0.0)))
+
+
+def compare(case: Case | MapCase) -> dict[str, Floats]:
+    """Return the numbers named in ``_NAMES`` at each contact fraction that the ensemble reaches."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", rm.LimitWarning)
+        ensemble, *maps = case.build()
+    along = separations(ensemble, FRACTIONS[FRACTIONS <= _FINE_FRACTION] if case.points >= FINE else FRACTIONS)
+    along = along[np.isfinite(along)]
+    laws = {name: law_by(ensemble, along, interaction) for name, interaction in MODELS.items()}
+    started = time.perf_counter()  # all is compiled by now
+    law_by(ensemble, along, MODELS["force_second"])
+    seconds = (time.perf_counter() - started) / along.size
+    fine, coarse = (HeightMap(height, SIZE, MODULUS) for height in maps)
+    radii, distance = [contact_radii(ensemble, h) for h in along.tolist()], distances(ensemble)
+    apart = [isinstance(case, Case) and "radius" in ensemble and not touch(each, distance) for each in radii]
+    found = np.array([press(fine, *each) for each in zip(along.tolist(), apart, strict=True)]).T
+    rough = [press(coarse, *each)[0] for each in zip(along.tolist(), apart, strict=True)]
+    alone, second = laws["force"], laws["force_second"]
+    return {
+        **{name: law["force"] for name, law in laws.items()},
+        **dict(zip(("force_bem", "contact_fraction_bem", "contact_count_bem", "seconds_bem"), found, strict=True)),
+        "contact_fraction": alone["contact_fraction"],
+        "contact_count": alone["contact_count"],
+        "force_coarse": np.array(rough),
+        "contact_fraction_second": second["contact_fraction"],
+        "contact_count_second": second["contact_count"],
+        "stated": second["model_error_curve"],
+        "stated_first": laws["force_first"]["model_error_curve"],
+        "stated_alone": alone["model_error_curve"],
+        "seconds_second": np.full(along.size, seconds),
+        "radius_points": np.array([np.sqrt(np.mean(a[a > 0.0] ** 2)) for a in radii]) * case.points / SIZE,
+    }
+
+
+def measure(quick: bool) -> xr.Dataset:
+    """Compare all cases, or a few of them on coarse grids."""
+    cases = QUICK if quick else CASES
+    with ProcessPoolExecutor(_WORKERS, mp_context=get_context("spawn")) as pool:
+        numbers = in_cases(_NAMES, list(pool.map(compare, cases)), "case", "step")
+    placement, shape, roughness = zip(*(case.labels for case in cases), strict=True)
+    return xr.Dataset(
+        numbers,
+        {
+            "placement": ("case", list(placement)),
+            "shape": ("case", list(shape)),
+            "roughness": ("case", list(roughness), named("heights over the drop at a spacing; of maps, of the waves")),
+            "seed": ("case", [case.seed for case in cases]),
+        },
+    )
+
+
+def estimates(contact_fraction: Floats, group: NDArray[np.str_]) -> Floats:
+    """Return the estimate of the error: of the summits of a map, and of other asperities."""
+    of_asperities, of_summits = (interaction_error(contact_fraction, kind) for kind in (ASPERITIES, SUMMITS))
+    return np.where(group == "map", of_summits, of_asperities)
+
+
+def errors(result: xr.Dataset, name: str = "force", full_contact: bool = True) -> Floats:
+    """Return by what share a force is too low [case, step], 1 in full contact or, not ``full_contact``, NaN there.
+
+    NaN where the grid does not resolve the contacts, or where boundary elements have not converged.
+    """
+    true = result["force_bem"]
+    known = (result["radius_points"] >= _MIN_POINTS) & (true.notnull() if full_contact else np.isfinite(true))
+    return np.asarray((1.0 - result[name] / true).where(known))
+
+
+def grid_errors(result: xr.Dataset) -> Floats:
+    """Return how far forces on half as many points are off; NaN where the error is not known, or in full contact."""
+    return np.abs(errors(result, "force_coarse"))
+
+
+def without_grid(fine: Any, coarse: Any) -> Any:
+    """Return the limit of forces on a grid and on one of half as many points a side, by an error of order 2."""
+    return fine + (fine - coarse) / 3.0
+
+
+def groups(result: xr.Dataset) -> NDArray[np.str_]:
+    """Return the group of each case and step."""
+    separated = dict.fromkeys(("hexagonal", "hard_core 0.5", "hard_core 0.7"), "separated")
+    placed = [separated.get(name, name.split()[0]) for name in result["placement"].to_numpy().tolist()]
+    whole = np.broadcast_to(np.array(placed)[:, None], result["force"].shape)
+    few = (result["contact_count"].to_numpy() <= FEW_CONTACTS) & (whole != "map") & (whole != "crowd")
+    return np.where(few, "few contacts", whole)
+
+
+def draw(result: xr.Dataset) -> "Figure":
+    """Draw the error of independent asperities over the contact fraction with its estimate, and by interaction."""
+    figure, (left, right) = panels(12, 5.2, 2)
+    fraction, group = result["contact_fraction"].to_numpy(), groups(result)
+    along = np.geomspace(5e-4, 1.0, 200)
+    for name, kind, style in (("estimate", ASPERITIES, "k-"), ("estimate for maps", SUMMITS, "k--")):
+        left.loglog(along, interaction_error(along, kind), style, lw=1.2, label=name)
+    for name in GROUPS:
+        left.plot(fraction[group == name], np.abs(errors(result)[group == name]), "o", ms=4, label=name)
+    left.set(ylim=(0.005, 1.3), ylabel="force too low, of crowds too high, by (relative)", title="Independent")
+    for number, (name, label) in enumerate(_LABELS.items()):
+        for own, mark in ((group != "map", "o"), (group == "map", "x")):
+            error = np.abs(errors(result, name, False)[own])
+            right.loglog(fraction[own], error, f"C{number}{mark}", ms=4, label=label if mark == "o" else None)
+    right.set(ylim=(1e-6, 1.3), ylabel="error of the force (relative)", title="By interaction (crosses: maps)")
+    for panel in (left, right):
+        panel.set(xlim=(5e-4, 1.0), xlabel="summed contact area over nominal area")
+        panel.legend(fontsize=9)
+    return figure
+
+
+def report(result: xr.Dataset) -> str:
+    """Return errors over sqrt(f), by interaction and on the finest grids, and how the stated ones do."""
+    fraction, error, group = result["contact_fraction"].to_numpy(), errors(result), groups(result)
+    coefficients, estimated, by_model, stated = [], [], [], []
+    for name in GROUPS:
+        own = np.isfinite(error) & (group == name)
+        parts = [own & (fraction > low) & (fraction <= high) for low, high in _BINS]
+        coefficients.append([name, *(_quantiles(error[part] / np.sqrt(fraction[part])) for part in parts)])
+        if own.any():
+            told = result["stated_alone"].to_numpy() if name == "crowd" else estimates(fraction, group)
+            estimated.append([name, *held(np.abs(error[own]), told[own]).cells])
+    for name, (low, high) in itertools.product(GROUPS, _FINER_BINS):
+        own = (group == name) & (fraction > low) & (fraction <= high)
+        if own.any():
+            found = [median_and_largest(errors(result, model, False)[own]) for model in MODELS]
+            by_model.append([name, f"{low:g} to {high:g}", *found])
+    grid = grid_errors(result)
+    unknown = np.fmax(grid, _NEGLIGIBLE)
+    for (order, force, stated_name), name in itertools.product(
+        (("1", "force_first", "stated_first"), ("2", "force_second", "stated")), GROUPS
+    ):
+        off, said = np.abs(errors(result, force, False)), result[stated_name].to_numpy()
+        own = np.isfinite(off) & np.isfinite(said) & (group == name)
+        if own.any():
+            stated.append([order, name, *held(off[own], said[own], unknown[own]).cells])
+    fine = result.isel(case=np.flatnonzero(result["seed"].to_numpy() >= _FINE_SEED))
+    finest = [_fine(fine.isel(step=i)) for i in range(fine.sizes["step"]) if fine["force_bem"][:, i].notnull().any()]
+    seconds = " and ".join(f"{1e3 * float(result[name].median()):.3g} ms" for name in ("seconds_second", "seconds_bem"))
+    grid = grid[np.isfinite(grid)]
+    labels = [*_LABELS.values()]
+    return f"""e over sqrt(f), median (5 to 95 %), f the summed contact fraction of independent asperities:
+
+{table(["placement", *(f"f from {low:g} to {high:g}" for low, high in _BINS)], coefficients)}
+
+{table(["placement", *HELD], estimated)}
+
+Forces of boundary elements on half as many points differ by {100.0 * float(np.median(grid)):.2g} % (median), at most
+{100.0 * float(grid.max()):.2g} %.
+
+Errors of the force by interaction, median of the magnitude (largest):
+
+{table(["placement", "f", *labels], by_model)}
+
+Separated paraboloids of lognormal radii on the finest grid, largest errors of all seeds:
+
+{table(["f", *labels, "of the grid", "area", "contacts"], finest)}
+
+The error that each order states (not told apart: {_NEGLIGIBLE:g} and less, and errors of the grid):
+
+{table(["order", "placement", *HELD], stated)}
+
+A load to second order and by boundary elements takes {seconds} (median).
+"""
+
+
+def _quantiles(ratio: Floats) -> str:
+    return "{1:.2f} ({0:.2f} to {2:.2f})".format(*np.quantile(ratio, [0.05, 0.5, 0.95])) if ratio.size else ""
+
+
+def _fine(step: xr.Dataset) -> list[str]:
+    """Return a row of the largest errors at a step; force held against the limit of both grids."""
+    exact = without_grid(step["force_bem"], step["force_coarse"])
+    off = [abs(step[name] / exact - 1.0) for name in (*MODELS, "force_bem")]
+    area = abs(step["contact_fraction_second"] / step["contact_fraction_bem"] - 1.0)
+    missed = abs(step["contact_count_second"] - step["contact_count_bem"])
+    cells = (f"{100.0 * float(error.max()):.2g} %" for error in (*off, area))
+    return [f"{float(step['contact_fraction_second'].median()):.2g}", *cells, f"{float(missed.max()):.0f} off"]
+
 
 STUDY = Study(
-    "versus_bem",
-    "What independence costs: against boundary elements",
-    measure,
-    draw,
-    report,
+    "versus_bem", "What independence costs: against boundary elements", measure, draw, report,
     f"{len(QUICK)} smaller cases in place of {len(CASES)}, on coarser grids",
-)
+)  # fmt: skip

@@ -1,18 +1,27 @@
-"""Ensembles of asperities with positions, of power-law profiles f = c r^n, and their height maps on a grid."""
+"""Cases: ensembles with positions, of profiles f = c r^n, with their maps; Gaussian maps with their summits."""
 
 import math
+import tempfile
+from itertools import product
+from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
+from oracles.gaussian_maps import gaussian_map
 
 import roughmdr as rm
 from roughmdr.numerics.arguments import Floats
+from roughmdr.spectrum import SelfAffine
+from roughmdr.storage.labelled import Labelled
+from roughmdr.storage.netcdf_writing import write_netcdf
 
 SIZE = 1e-3  # [m], side of the patch
+MODULUS = 1e9  # [Pa], E*
 _RADIUS = 1.0  # [m], mean, so large that no slope matters: of contacts and roughness only the ratios are left
-_SLOPE = 1e-4  # of a Gaussian surface
+_SLOPE, _MAP_SLOPE = 1e-4, 1e-3  # r.m.s., of the surface of nayak and of maps: so small that nothing depends on it
 _DROP = 1e-7  # [m], of a cone and of r^4 at the mean spacing, for as small a slope
+_SEARCHED = 2000  # separations in which those of given contact fractions are found
 
 
 class Case(NamedTuple):
@@ -135,3 +144,73 @@ def distances(ensemble: xr.Dataset) -> Floats:
     result = np.hypot(*apart)
     np.fill_diagonal(result, np.inf)
     return np.asarray(result)
+
+
+def separations(ensemble: xr.Dataset, fractions: Floats) -> Floats:
+    """Return where independent asperities reach contact fractions; NaN where they do not before the lowest touches."""
+    height = ensemble["height"].to_numpy()
+    deep = 2.0 * float(np.ptp(height)) + 1e-7
+    tried = height.max() - deep * np.linspace(0.0, 1.0, _SEARCHED)[1:] ** 3
+    squares = [float(np.sum(contact_radii(ensemble, h) ** 2)) for h in tried.tolist()]
+    return np.asarray(np.interp(fractions, math.pi * np.array(squares) / SIZE**2, tried, right=np.nan))
+
+
+class MapCase(NamedTuple):
+    """A map of a self-affine spectrum; its waves as shares of the side."""
+
+    hurst: float
+    long_wave: float
+    short_wave: float
+    points: int
+    """A side of the grid."""
+    seed: int
+
+    @property
+    def labels(self) -> tuple[str, str, float]:
+        """Placement, shape, and the ratio of the wavelengths."""
+        return "map", f"hurst {self.hurst:g}", self.long_wave / self.short_wave
+
+    def build(self) -> tuple[xr.Dataset, Floats, Floats]:
+        """Return the summits, and the map on its grid and on every second point of it, which still holds its waves."""
+        waves = {"long_wave": self.long_wave * SIZE, "short_wave": self.short_wave * SIZE}
+        spectrum = SelfAffine.of(hurst=self.hurst, rms_slope=_MAP_SLOPE, **waves)
+        height = gaussian_map(spectrum, self.points, SIZE, self.seed)
+        with tempfile.TemporaryDirectory() as folder:
+            write_map(height, SIZE, Path(folder) / "map.nc")
+            summits = rm.generate({"source": "surface", "file": str(Path(folder) / "map.nc")}, seed=0)
+        return summits, height, height[::2, ::2]
+
+
+def write_map(height: Floats, size: float, file: Path) -> None:
+    """Write a periodic map of heights [m] over ``size`` [m] as netCDF."""
+    along = np.arange(height.shape[0]) * size / height.shape[0]
+    stored = xr.Dataset(
+        {"height": (("x", "y"), height, {"units": "m"})},
+        {axis: (axis, along, {"units": "m"}) for axis in "xy"},
+        {"periodic": 1},
+    )
+    write_netcdf(Labelled.of(stored), file)
+
+
+PLACEMENTS = ("random", "hard_core 0.5", "hard_core 0.7", "hexagonal", "square")
+FINE = 1024
+"""Grid of the cases that are to show more digits than the others."""
+CASES: list[Case | MapCase] = [
+    *(Case(where, "paraboloid", 64, rough, 256, seed)
+      for seed, rough, where in product((1, 2), (0.02, 0.2, 1.0), PLACEMENTS)),
+    *(Case(where, shape, 64, 0.2, 256, 3)
+      for shape, where in product(("lognormal", "cone", "quartic"), PLACEMENTS[::2])),
+    *(Case("nayak", "nayak", 250, long, 512, seed) for seed, long in ((6, 0.25), (7, 0.5), (8, 0.07))),
+    *(MapCase(hurst, long, 0.0833, 256, 4) for hurst, long in product((0.3, 0.8), (0.5, 0.25, 0.0834))),
+    *(Case(where, "paraboloid", count, 0.1, points, 5)
+      for (count, points), where in product(((16, 128), (256, 512)), PLACEMENTS[::2])),
+    *(Case(where, "paraboloid", 40, rough, 256, 9)
+      for rough, where in product((0.02, 0.2), ("crowd 0.5", "crowd 0.7"))),
+    *(Case("hard_core 0.7", "lognormal", count, 0.2, FINE, seed)
+      for seed, count in enumerate((40, 52, 64, 80, 100), start=11)),
+]  # fmt: skip
+QUICK: list[Case | MapCase] = [
+    Case("random", "paraboloid", 25, 0.2, 96, 1),
+    Case("square", "paraboloid", 25, 0.02, 96, 1),
+    MapCase(0.8, 0.25, 0.125, 128, 2),
+]

@@ -1,0 +1,112 @@
+"""Our law beside another solution: laws along paths, numbers of all cases, errors, and how often a stated one holds."""
+
+import warnings
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+import xarray as xr
+
+import roughmdr as rm
+from roughmdr.numerics.arguments import Floats
+from studies.study import named
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+FACTOR = 3.0
+"""Within which a stated error is to be of the true one."""
+PAIRS: dict[int, Any] = {order: {"model": "pairwise", "order": order} for order in (1, 2)}
+"""Interactions in pairs, by their order."""
+
+
+def law_of(ensemble: xr.Dataset, **asked: Any) -> xr.Dataset:
+    """Return the law by roughmdr, without warnings; RoughmdrError where it has none."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", rm.LimitWarning)  # slopes and the like are no part of what is compared
+        return rm.load_separation(ensemble, **asked)
+
+
+def law_or_nan(ensemble: xr.Dataset, separation: Floats, *variables: str, **asked: Any) -> list[Floats]:
+    """Return variables of the law at separations; NaN where it has none."""
+    try:
+        law = law_of(ensemble, separation=separation, variables=variables, **asked)
+    except rm.RoughmdrError:
+        return [np.full(separation.size, np.nan)] * len(variables)
+    return [law[name].to_numpy() for name in variables]
+
+
+def in_cases(
+    words: Mapping[str, tuple[str, str]], cases: Sequence[Mapping[str, Any]], *dims: str
+) -> dict[str, tuple[tuple[str, ...], Floats, dict[str, str]]]:
+    """Return variables by their words and units, of numbers or arrays of each case; NaN beyond the end of arrays."""
+    return {name: (dims, _padded([case[name] for case in cases]), named(*words[name])) for name in words}
+
+
+def _padded(rows: list[Any]) -> Floats:
+    arrays = [np.asarray(row, dtype=float) for row in rows]
+    found = np.full((len(arrays), *np.max([each.shape for each in arrays], axis=0).astype(int)), np.nan)
+    for row, each in zip(found, arrays, strict=True):
+        row[tuple(slice(size) for size in each.shape)] = each
+    return found
+
+
+def rms(values: xr.DataArray | Floats) -> float:
+    """Return the root mean square of what is known."""
+    known = np.asarray(values)[np.isfinite(values)]
+    return float(np.sqrt(np.mean(known**2))) if known.size else np.nan
+
+
+def percent(value: float, digits: int = 1) -> str:
+    """Return a share in per cent; a dash where it is unknown."""
+    return f"{100.0 * value:.{digits}f} %" if np.isfinite(value) else "-"
+
+
+def median_and_largest(errors: xr.DataArray | Floats) -> str:
+    """Return the median magnitude and, in brackets, the largest of the errors that are known."""
+    known = np.abs(np.asarray(errors)[np.isfinite(errors)])
+    return f"{100.0 * np.median(known):.2g} % ({100.0 * known.max():.2g})" if known.size else ""
+
+
+class Held(NamedTuple):
+    """Stated errors beside true ones."""
+
+    number: int
+    bounded: float
+    """Share of the errors that the stated one bounds,"""
+    within: float
+    """and that are within FACTOR of it."""
+
+    @property
+    def cells(self) -> list[str]:
+        """Number and shares in a table."""
+        return [str(self.number), *(f"{100.0 * share:.0f} %" for share in self[1:])]
+
+
+HELD = ["errors", "below the estimate", f"within a factor of {FACTOR:g}"]
+"""Heads of the cells."""
+
+
+def bounds(error: Floats, stated: Floats, unknown: Floats | float = 0.0) -> tuple[Any, Any]:
+    """Return which errors a stated one bounds, and which are within FACTOR of it, but for what is unknown of both."""
+    near = (stated <= FACTOR * np.maximum(error, unknown)) & (error <= FACTOR * np.maximum(stated, unknown))
+    return error <= np.maximum(stated, unknown), near
+
+
+def held(error: Floats, stated: Floats, unknown: Floats | float = 0.0) -> Held:
+    """Return how often a stated error holds."""
+    bounded, near = bounds(error, stated, unknown)
+    return Held(error.size, float(np.mean(bounded)), float(np.mean(near)))
+
+
+def panels(width: float, height: float, count: int) -> "tuple[Figure, list[Axes]]":
+    """Return a figure of panels in a row, on a grid."""
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(width, height), layout="constrained")
+    row = list(np.atleast_1d(figure.subplots(1, count)))
+    for panel in row:
+        panel.grid(color="0.92")
+        panel.set_axisbelow(True)
+    return figure, row
