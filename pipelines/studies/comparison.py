@@ -15,6 +15,8 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
+Variable = tuple[tuple[str, ...], Floats, dict[str, str]]
+"""Dimensions, values and attributes."""
 FACTOR = 3.0
 """Within which a stated error is to be of the true one."""
 PAIRS: dict[int, Any] = {order: {"model": "pairwise", "order": order} for order in (1, 2)}
@@ -39,7 +41,7 @@ def law_or_nan(ensemble: xr.Dataset, separation: Floats, *variables: str, **aske
 
 def in_cases(
     words: Mapping[str, tuple[str, str]], cases: Sequence[Mapping[str, Any]], *dims: str
-) -> dict[str, tuple[tuple[str, ...], Floats, dict[str, str]]]:
+) -> dict[str, Variable]:
     """Return variables by their words and units, of numbers or arrays of each case; NaN beyond the end of arrays."""
     return {name: (dims, _padded([case[name] for case in cases]), named(*words[name])) for name in words}
 

@@ -6,10 +6,8 @@ from typing import Any
 import numpy as np
 import pytest
 from forms import large
-from studies.hills.maps import ANISOTROPIC, ISOTROPIC
+from studies.hills.maps import ANISOTROPIC, ISOTROPIC, separations, square
 from studies.hills.maps import SIDE as SIDE_OF_CASES
-from studies.hills.press import square
-from studies.hills.separations import separations
 
 from roughmdr.elements import refine
 from roughmdr.elements.half_space import BoundaryElements

@@ -7,15 +7,11 @@ import numpy as np
 import pytest
 from carried_out import CarriedOut, carried_out
 from oracles.free_elements import FreeMap
-from studies.hills import STUDY
-from studies.hills.convergence import FINEST, SCALES
-from studies.hills.errors import errors_of, errors_on_files, groups, rms, within
-from studies.hills.maps import QUICK, MapCase
-from studies.hills.measure import METHODS, PERSSON, measure_maps
-from studies.hills.measured_maps import FILES, FOLDER, FREE_METHODS, measure_files
-from studies.hills.press import QUANTITIES, by_elements, by_persson, square
-from studies.hills.report_convergence import by_noise, by_points, by_scales
-from studies.hills.report_files import report_files
+from studies.comparison import rms
+from studies.hills import METHODS, PERSSON, STUDY, errors_of, groups, measure_maps, within
+from studies.hills.convergence import FINEST, SCALES, by_noise, by_points, by_scales
+from studies.hills.maps import QUANTITIES, QUICK, MapCase, by_elements, by_persson, square
+from studies.hills.measured_maps import FILES, FOLDER, FREE_METHODS, errors_on_files, measure_files, report_files
 
 SHARED = Path(__file__).parents[3] / "shared" / "surfaces"
 
@@ -155,4 +151,4 @@ def test_a_measured_map(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None
     assert ((border > 0.0) & (border < 1.0)).all()
     text = report_files(found)
     assert all(f"| {FILES[0]} | {method} |" in text for method in FREE_METHODS)
-    assert "of the border lies" in text
+    assert "of the force." in text

@@ -12,9 +12,7 @@ import roughmdr as rm
 from roughmdr.ensemble.maps.height_map import HeightMap
 from roughmdr.ensemble.maps.summits import find_summits
 from roughmdr.numerics.arguments import Floats
-from studies.hills.maps import SIDE, MapCase
-from studies.hills.press import hills_of
-from studies.hills.separations import POINTS
+from studies.hills.maps import POINTS, SIDE, MapCase, hills_of
 
 _SEARCHED = 0.05  # of the stretch: between separations, among which that of the preload is found
 

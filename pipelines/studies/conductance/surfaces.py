@@ -7,8 +7,7 @@ import xarray as xr
 
 from roughmdr.ensemble.maps.summits import find_summits
 from roughmdr.numerics.arguments import Floats
-from studies.hills.maps import SIDE, MapCase
-from studies.hills.press import hills_of, square
+from studies.hills.maps import SIDE, MapCase, hills_of, square
 from studies.versus_bem.ensembles import SIZE, Case
 
 PAIRS: dict[str, Any] = {f"order {order}": {"model": "pairwise", "order": order} for order in (1, 2)}

@@ -16,12 +16,12 @@ from roughmdr.ensemble.maps.detrend import remove_trend
 from roughmdr.ensemble.maps.height_map import HeightMap
 from roughmdr.ensemble.maps.hills.find import wavelength
 from roughmdr.ensemble.maps.read_map import read_map
-from roughmdr.ensemble.maps.resolution import hills_error
+from roughmdr.ensemble.maps.resolution import MAX_HILLS_ERROR, hills_error
 from roughmdr.ensemble.maps.summits import find_summits
 from roughmdr.numerics.arguments import Floats
-from studies.hills.press import QUANTITIES, STIFFNESS_EACH, by_asperities, hills_of
-from studies.hills.separations import FRACTIONS
-from studies.study import named
+from studies.comparison import percent, rms
+from studies.hills.maps import FRACTIONS, QUANTITIES, STIFFNESS_EACH, by_asperities, hills_of
+from studies.study import named, table
 
 FOLDER = "ROUGHMDR_SURFACES"
 FILES = ("optical.nc", "afm_film.di")
@@ -109,3 +109,52 @@ def _contact_fraction(elements: FreeMap) -> float:
     """Return that at the last separation; opposite sides of the map do not meet."""
     padded = np.pad(elements.forces, 1)
     return by_perimeter(padded) * padded.size / elements.forces.size
+
+
+def report_files(result: xr.Dataset) -> str:
+    """Return what was found on measured maps, or that there are none."""
+    if "surface" not in result.dims:
+        return (
+            f"Measured maps were left out: the environment variable {FOLDER} names no folder with {' or '.join(FILES)}."
+        )
+    names = [str(name) for name in result["surface"].to_numpy()]
+    rows = [row for name in names for row in _rows(name, result.sel(surface=name))]
+    head = ["map", "method", "force, rms", "mean", "area, rms", "stiffness, rms", "answers up to"]
+    described = " ".join(_described(name, result.sel(surface=name)) for name in names)
+    return (
+        "Measured maps, squares from the middle, against boundary elements of a free half-space on the same points: "
+        "errors of the forces of all cells, those at the border too, where hills and summits whose tops lie beyond it "
+        f"are missing.\n\n{table(head, rows)}\n\n{described}"
+    )
+
+
+def errors_on_files(result: xr.Dataset, quantity: str = "force") -> xr.DataArray:
+    """Return relative errors on measured maps over surface, surface_solver and fraction."""
+    values = result[f"surface_{quantity}"]
+    return values.drop_sel(surface_solver="free elements") / values.sel(surface_solver="free elements", drop=True) - 1.0
+
+
+def _rows(name: str, own: xr.Dataset) -> list[list[str]]:
+    rows = []
+    for method in FREE_METHODS:
+        force, area, stiffness = (errors_on_files(own, each).sel(surface_solver=method) for each in QUANTITIES)
+        known = np.isfinite(force.to_numpy())
+        mean = f"{100 * float(force.mean()):+.1f} %" if known.any() else "-"
+        last = percent(float(own["fraction"].to_numpy()[known].max()) if known.any() else np.nan, 0)
+        rows.append([name, method, percent(rms(force)), mean, percent(rms(area), 0), percent(rms(stiffness)), last])
+    return rows
+
+
+def _described(name: str, own: xr.Dataset) -> str:
+    """Return what to know of a map before its errors are read."""
+    border = own["border_share"].to_numpy()
+    per_wave, error = float(own["surface_points"] / own["surface_waves"]), float(own["surface_resolution_error"])
+    few = (
+        f"; that is too few: elements and hills on these points are held to each other, and neither to the surface, "
+        f"whose forces are higher by about {percent(error, 0)} (`resolution_error`)"
+    )
+    return (
+        f"{name}: {int(own['surface_points'])} points and {float(own['surface_waves']):.0f} wavelengths a side, "
+        f"{per_wave:.1f} points a wavelength{few if error > MAX_HILLS_ERROR else ''}. Within one wavelength of the "
+        f"border lies {percent(border.min(), 0)} to {percent(border.max(), 0)} of the force."
+    )
