@@ -49,8 +49,9 @@ def in_cases(
 def _padded(rows: list[Any]) -> Floats:
     arrays = [np.asarray(row, dtype=float) for row in rows]
     found = np.full((len(arrays), *np.max([each.shape for each in arrays], axis=0).astype(int)), np.nan)
-    for row, each in zip(found, arrays, strict=True):
-        row[tuple(slice(size) for size in each.shape)] = each
+    for number, each in enumerate(arrays):
+        place: tuple[Any, ...] = (number, *(slice(size) for size in each.shape))
+        found[place] = each
     return found
 
 

@@ -9,10 +9,8 @@ from carried_out import CarriedOut, carried_out
 from forms import large
 from oracles.adhesive_elements import AdhesiveMap
 from oracles.boundary_elements import HeightMap
-from studies.versus_adhesive_bem import STUDY
+from studies.versus_adhesive_bem import QUICK, STUDY, by_elements, judge
 from studies.versus_adhesive_bem.cases import DETACHED, MODELS, WORK, Case, law
-from studies.versus_adhesive_bem.judge import judge
-from studies.versus_adhesive_bem.measure import QUICK, by_elements
 from studies.versus_bem.ensembles import height_map
 
 import roughmdr as rm

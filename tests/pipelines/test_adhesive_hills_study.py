@@ -6,11 +6,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 from carried_out import CarriedOut, carried_out
-from studies.adhesive_hills import STUDY
+from studies.adhesive_hills import METHODS, STUDY, judge
 from studies.adhesive_hills.cases import QUICK, Adhesive
-from studies.adhesive_hills.judge import judge
-from studies.adhesive_hills.measure import METHODS
-from studies.adhesive_hills.stated import FACTOR, SETS, compare
+from studies.adhesive_hills.stated import SETS, compare
+from studies.comparison import FACTOR
 
 
 @pytest.fixture(scope="module")

@@ -5,18 +5,19 @@ from pathlib import Path
 import numpy as np
 import pytest
 import xarray as xr
-from studies.coupled_pull_off import STUDY
-from studies.coupled_pull_off.measure import beyond_pairs, change
-from studies.coupled_pull_off.surfaces import (
+from studies.coupled_pull_off import (
     JUMP_ON_RADIUS,
     MODELS,
     MODULUS,
     PULL_OFF_FORCE,
     PULL_OFF_LENGTH,
     RADIUS,
+    STUDY,
     WORK,
     Surface,
     along,
+    beyond_pairs,
+    change,
     cycle,
 )
 

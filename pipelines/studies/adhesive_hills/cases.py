@@ -1,17 +1,16 @@
 """Maps with their adhesion, and the laws of their asperities along a path. E* is 1."""
 
 import math
-import warnings
 from typing import Any, NamedTuple
 
 import numpy as np
 import xarray as xr
 from oracles.adhesive_elements import AdhesiveMap
 
-import roughmdr as rm
 from roughmdr.ensemble.maps.height_map import HeightMap
 from roughmdr.ensemble.maps.summits import find_summits
 from roughmdr.numerics.arguments import Floats
+from studies.comparison import law_or_nan
 from studies.hills.maps import POINTS, SIDE, MapCase, hills_of
 
 _SEARCHED = 0.05  # of the stretch: between separations, among which that of the preload is found
@@ -69,25 +68,9 @@ class Adhesive:
         return np.concatenate([loading, loading[-2::-1]])
 
     def law(self, asperities: xr.Dataset, separation: Floats, **asked: Any) -> Law:
-        """Return the law of asperities along a path, by JKR unless asked otherwise."""
-        try:
-            found = self.found(asperities, separation, **asked)
-        except rm.RoughmdrError:
-            return Law(np.full(separation.size, np.nan), np.full(separation.size, np.nan))
-        return Law(found["force"].to_numpy(), found["contact_fraction"].to_numpy())
-
-    def found(self, asperities: xr.Dataset, separation: Floats, **asked: Any) -> xr.Dataset:
-        """Return that law with the stated error; RoughmdrError where there is none."""
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore", rm.LimitWarning)
-            return rm.load_separation(
-                asperities,
-                separation=separation,
-                effective_modulus=1.0,
-                work=self.work,
-                variables=("force", "contact_fraction", "model_error_curve"),
-                **asked,
-            )
+        """Return the law of asperities along a path, by JKR unless asked otherwise; NaN where there is none."""
+        asked |= {"effective_modulus": 1.0, "work": self.work}
+        return Law(*law_or_nan(asperities, separation, "force", "contact_fraction", **asked))
 
     def by_elements(self, separation: Floats, points: float, reach: float) -> Law:
         """Return the law by boundary elements; a contact is the mean of what is closed and what is within the range."""

@@ -1,14 +1,275 @@
-"""Adhesive asperities coupled in pairs against boundary elements with an attraction of finite range."""
+"""Adhesive asperities by models and by boundary elements on two grids, along the same path."""
 
-from studies.study import Study
-from studies.versus_adhesive_bem.measure import CASES, QUICK, measure
-from studies.versus_adhesive_bem.report import draw, report
+import time
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+import xarray as xr
+from oracles.adhesive_elements import AdhesiveMap
+
+from roughmdr.numerics.arguments import Floats
+from studies.comparison import in_cases, panels
+from studies.study import Study, table
+from studies.versus_adhesive_bem.cases import DETACHED, MODELS, WORK, Case, law
+from studies.versus_bem.ensembles import distances, height_map
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+_LABELS = {"independent": "independent", "first": "pairs, order 1", "second": "pairs, order 2"}
+_COLOURS = {"independent": "0.6", "first": "#1b6ca8", "second": "#c8553d"}
+_SHOWN = 4.0  # Tabor number of the curves, or that next to it
+CASES = (
+    Case(1, 8.0, 2.0, 192),
+    Case(1, 8.0, 3.0, 288),
+    Case(1, 8.0, 4.0, 384),
+    Case(1, 8.0, 6.0, 576),
+    Case(4, 5.0, 2.0, 256),
+    Case(4, 5.0, 3.0, 384),
+    Case(4, 5.0, 4.0, 512),
+    Case(4, 5.0, 6.0, 720),
+    Case(4, 7.0, 2.0, 352),
+    Case(4, 7.0, 4.0, 672),
+    Case(9, 5.0, 2.0, 384, 2),
+)
+QUICK = (Case(1, 8.0, 2.0, 144, step=0.08), Case(4, 5.0, 2.0, 192, step=0.08))
+SOURCES = (*MODELS, "bem", "coarse")
+"""They give force, area and count: the models, and boundary elements on both grids."""
+_QUANTITIES = {
+    "force": ("force over E* a0^3/R", "1"),
+    "area": ("contact area over a0^2; of boundary elements the mean of those closed and within the range", "1"),
+    "count": ("asperities in contact", "1"),
+}
+_COLUMNS = {
+    "asperities": ("asperities in the patch", "1"),
+    "spacing": ("mean spacing over a0", "1"),
+    "nearest": ("least distance over a0", "1"),
+    "tabor": ("Tabor number of the mean radius", "1"),
+    "cells": ("range over the spacing of the grid", "1"),
+}
+
+
+def by_elements(case: Case, ensemble: xr.Dataset, separation: Floats, points: int) -> dict[str, Floats]:
+    """Return force, contact area and number of contacts by boundary elements; one is where the gap at a tip is 0."""
+    surface = AdhesiveMap(height_map(ensemble, points), case.size, WORK, case.reach)
+    tips = tuple((ensemble[axis].to_numpy() * points / case.size).astype(int) % points for axis in "xy")
+    rows = []
+    for h in separation.tolist():
+        state = surface.move(h)
+        rows.append((state.force, 0.5 * (state.closed + state.attracted), np.count_nonzero(surface.gap[tips] == 0.0)))
+    return dict(zip(_QUANTITIES, np.array(rows, dtype=float).T, strict=True))
+
+
+def compare(case: Case) -> dict[str, Any]:
+    """Return force, area and count by each source along the path of a case, with the run times of the path [s]."""
+    ensemble = case.generate()
+    separation = case.separations(ensemble)
+    laws, seconds = [], []
+    for name in SOURCES:
+        started = time.perf_counter()
+        if name in MODELS:
+            laws.append(law(ensemble, separation, MODELS[name]))
+        else:
+            laws.append(by_elements(case, ensemble, separation, case.points if name == "bem" else case.coarse))
+        seconds.append(time.perf_counter() - started)
+    return {
+        **{name: [each[name] for each in laws] for name in _QUANTITIES},
+        "separation": separation - float(ensemble["height"].max()),
+        "seconds": seconds,
+        "asperities": case.asperities,
+        "spacing": case.spacing,
+        "nearest": float(distances(ensemble).min()),
+        "tabor": case.tabor,
+        "cells": case.reach * case.points / case.size,
+    }
+
+
+def measure(quick: bool) -> xr.Dataset:
+    """Compare all cases, or two of them on coarse grids; NaN beyond the end of a path."""
+    compared = [compare(case) for case in (QUICK if quick else CASES)]
+    along = {"separation": ("separation from the highest asperity over a0^2/R", "1")}
+    return xr.Dataset(
+        in_cases(_QUANTITIES, compared, "case", "source", "step")
+        | in_cases(along, compared, "case", "step")
+        | in_cases({"seconds": ("run time of a path", "s")}, compared, "case", "source"),
+        {"source": list(SOURCES), **in_cases(_COLUMNS, compared, "case")},
+    )
+
+
+class Judged(NamedTuple):
+    """Differences of a source from boundary elements."""
+
+    loading: float
+    """The largest of the force over the largest tension, at steps where as many are in contact, and not none,"""
+    unloading: float
+    middle: float
+    """and the root mean square of both branches."""
+    area: float
+    """The largest of the contact area over the largest area, at such steps."""
+    pull_off: float
+    """Of the largest tension on unloading, relative."""
+    on: float
+    """Mean lag of the jumps on over the stretch at which one alone lets go; > 0 where it jumps on at a smaller gap."""
+    off: float
+    """The lag at letting go; > 0 where it lets go at a smaller gap."""
+    before: float
+    """The largest tension of boundary elements before the first contact, over the largest of all."""
+    apart: float
+    """Share of the steps in contact where not as many are in contact."""
+
+
+def turning(separation: Floats) -> int:
+    """Return the step at which the path turns."""
+    return int(np.nanargmin(separation))
+
+
+def jumps(count: Floats, separation: Floats) -> tuple[Floats, Floats]:
+    """Return the separations at which one more and one less comes into contact, each midway between two steps."""
+    turn = turning(separation)
+    change = np.diff(count, prepend=0.0)
+    middle = 0.5 * (separation + np.roll(separation, 1))
+    on, off = (np.maximum(sign * part, 0).astype(int)
+               for sign, part in ((1, change[: turn + 1]), (-1, change[turn + 1 :])))  # fmt: skip
+    return np.repeat(middle[: turn + 1], on), np.repeat(middle[turn + 1 :], off)
+
+
+def judge(case: xr.Dataset, source: str) -> Judged:
+    """Judge a source against boundary elements on the fine grid."""
+    case = case.isel(step=np.flatnonzero(case["separation"].notnull().to_numpy()))
+    separation = case["separation"].to_numpy()
+    turn = turning(separation)
+    force, area, count = (case[name].sel(source=source).to_numpy() for name in ("force", "area", "count"))
+    force_bem, area_bem, count_bem = (case[name].sel(source="bem").to_numpy() for name in ("force", "area", "count"))
+    tension = -force_bem[turn:].min()
+    alike = count == count_bem
+    contact = (count > 0) | (count_bem > 0)
+    judged = alike & contact
+    off = np.where(judged, np.abs(force - force_bem), 0.0) / tension
+    areas_off = np.where(judged, np.abs(area - area_bem), 0.0) / area_bem.max()
+    lags = [
+        float(np.mean(np.sort(true) - np.sort(found))) / -DETACHED if true.size == found.size else np.nan
+        for found, true in zip(jumps(count, separation), jumps(count_bem, separation), strict=True)
+    ]
+    return Judged(
+        loading=float(off[: turn + 1].max()),
+        unloading=float(off[turn:].max()),
+        middle=float(np.sqrt(np.mean(off[judged] ** 2))),
+        area=float(areas_off.max()),
+        pull_off=float(-force[turn:].min() / tension - 1.0),
+        on=lags[0],
+        off=lags[1],
+        before=float(-force_bem[: turn + 1][count_bem[: turn + 1] == 0].min() / tension),
+        apart=float(np.mean(~alike[contact])),
+    )
+
+
+def _curves(panel: "Axes", case: xr.Dataset, quantity: str, share: float) -> None:
+    """Draw a quantity over the separation: loading hollow and thin, unloading full."""
+    case = case.isel(step=np.flatnonzero(case["separation"].notnull().to_numpy()))
+    separation = case["separation"].to_numpy()
+    turn = turning(separation)
+    for name, style in (("independent", "--"), ("second", "-")):
+        values = share * case[quantity].sel(source=name).to_numpy()
+        panel.plot(separation[: turn + 1], values[: turn + 1], style, color=_COLOURS[name], lw=1.0)
+        panel.plot(separation[turn:], values[turn:], style, color=_COLOURS[name], lw=2.0, label=_LABELS[name])
+    values = share * case[quantity].sel(source="bem").to_numpy()
+    panel.plot(separation[: turn + 1], values[: turn + 1], "ko", ms=4, mfc="w", label="boundary elements, loading")
+    panel.plot(separation[turn:], values[turn:], "ko", ms=4, label="boundary elements, unloading")
+    panel.set(xlabel="separation from the highest asperity [a0²/R]")
+
+
+def _by_tabor(panel: "Axes", result: xr.Dataset) -> None:
+    """Draw the largest error of the force over the Tabor number, by ensemble and model; one in a patch for comparison.
+
+    Its neighbours, the periodic images, are so far away that it shows the range alone.
+    """
+    numbers, spacings = result["asperities"].to_numpy(), result["spacing"].to_numpy()
+    groups = sorted(set(zip(numbers.tolist(), spacings.tolist(), strict=True)))
+    for (number, spacing), marker in zip(groups, "Dsov", strict=False):
+        own = result.isel(case=np.flatnonzero((numbers == number) & (spacings == spacing)))
+        for name in ("second",) if number == 1 else ("independent", "second"):
+            found = [judge(own.isel(case=i), name) for i in range(own.sizes["case"])]
+            errors = [100.0 * max(one.loading, one.unloading) for one in found]
+            where = f"one, {spacing:g} a0 apart" if number == 1 else f"{number}, {spacing:g} a0 apart"
+            colour, line = ("k", ":") if number == 1 else (_COLOURS[name], "-")
+            panel.loglog(own["tabor"], errors, line, marker=marker, color=colour, label=f"{where}: {_LABELS[name]}")
+    panel.set(xlabel="Tabor number", ylabel="largest error of the force over pull-off [%]")
+    panel.set_xticks([2, 3, 4, 6], ["2", "3", "4", "6"])
+    panel.set_xticks([], minor=True)
+    panel.set_yticks([1, 2, 5, 10, 20, 50], ["1", "2", "5", "10", "20", "50"])
+    panel.set_title("Steps with as many in contact")
+    panel.legend(fontsize=8)
+
+
+def draw(result: xr.Dataset) -> "Figure":
+    """Draw force and contact area over the separation of one case, and errors over the Tabor number of all."""
+    figure, (left, middle, right) = panels(16, 5.2, 3)
+    several = result.isel(case=np.flatnonzero(result["asperities"].to_numpy() > 1))
+    case = several.isel(case=int(np.argmin(np.abs(several["tabor"].to_numpy() - _SHOWN))))
+    number, spacing, tabor = int(case["asperities"]), float(case["spacing"]), float(case["tabor"])
+    _curves(left, case, "force", 1.0)
+    left.set(ylabel="force [E* a0³/R]", title=f"{number} asperities, {spacing:g} a0 apart, Tabor number {tabor:g}")
+    left.legend(fontsize=8, loc="lower right")
+    _curves(middle, case, "area", 1.0 / (number * spacing**2))
+    middle.set(ylabel="contact area over nominal area", title="Thin lines: loading; thick: unloading")
+    _by_tabor(right, result)
+    return figure
+
+
+def report(result: xr.Dataset) -> str:
+    """Return errors by case and model, where jumps are, and the errors of the grids."""
+    errors, lags, grids = [], [], []
+    for i in range(result.sizes["case"]):
+        case = result.isel(case=i)
+        nearest = float(case["nearest"])
+        apart = f"{float(case['spacing']):g} ({f'{nearest:.1f}' if np.isfinite(nearest) else 'images'})"
+        head = [f"{int(case['asperities'])}", apart, f"{float(case['tabor']):g}"]
+        for name in MODELS:
+            found = judge(case, name)
+            errors.append(
+                [*head, _LABELS[name], *_percent(found, "loading", "unloading", "middle", "area", "pull_off")]
+            )
+            lags.append([*head, _LABELS[name], *_percent(found, "on", "off", "before", "apart")])
+        fraction = float(case["area"].sel(source="bem").max() / case["asperities"] / case["spacing"] ** 2)
+        mesh = judge(case, "coarse")
+        seconds = f"{float(case['seconds'].sel(source='bem')):.1f} s"
+        paired = f"{1e3 * float(case['seconds'].sel(source='second')):.0f} ms"
+        grids.append([*head, f"{100.0 * fraction:.1f} %", f"{float(case['cells']):.1f}",
+                      *_percent(mesh, "loading", "unloading", "area", "pull_off"), seconds, paired])  # fmt: skip
+    own = ["asperities", "apart (nearest) [a0]", "Tabor number"]
+    errors_head = ["model", "loading", "unloading", "r.m.s.", "contact area", "pull-off force"]
+    lags_head = ["model", "jumps on", "lets go", "tension before contact", "steps not compared"]
+    grids_head = ["contact", "range over grid", "loading", "unloading", "contact area", "pull-off force", "elements",
+                  "pairs"]  # fmt: skip
+    return f"""Errors against boundary elements, of the force over the largest tension and of the area over the largest,
+the largest of the steps where as many asperities are in contact. One alone has its periodic images as neighbours. The
+area of boundary elements is the mean of those where the gap is 0 and where it is less than the range:
+
+{table([*own, *errors_head], errors)}
+
+Lags of jumps, means over the asperities: how much farther away they jump on and let go by boundary elements, over the
+stretch at which one alone lets go (a step of the path is {100.0 * _step(result):.0f} % of it):
+
+{table([*own, *lags_head], lags)}
+
+How far a grid of 2/3 as many points a side is from the grid, the largest contact fraction, and run times of a path:
+
+{table([*own, *grids_head], grids)}
+"""
+
+
+def _percent(found: Judged, *names: str) -> list[str]:
+    return [f"{100.0 * getattr(found, name):.2g} %" for name in names]
+
+
+def _step(result: xr.Dataset) -> float:
+    """Return the step of the first path over the stretch at which one alone lets go."""
+    separation = result["separation"].isel(case=0).to_numpy()
+    return float(separation[0] - separation[1]) / -DETACHED
+
 
 STUDY = Study(
-    "versus_adhesive_bem",
-    "Adhesive pairs against boundary elements",
-    measure,
-    draw,
-    report,
+    "versus_adhesive_bem", "Adhesive pairs against boundary elements", measure, draw, report,
     f"{len(QUICK)} cases in place of {len(CASES)}, on coarser grids",
-)
+)  # fmt: skip

@@ -5,7 +5,6 @@ which one alone jumps on. Lengths along the plane are in a0, across it in a0^2/R
 """
 
 import math
-import warnings
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -13,15 +12,12 @@ import xarray as xr
 
 import roughmdr as rm
 from roughmdr.numerics.arguments import Floats
+from studies.comparison import PAIRS, law_of
 
 WORK = 0.5 / math.pi
 DETACHED = -(3.0 * 0.25 ** (4.0 / 3.0))
 """The indentation at which one alone lets go under fixed grips, t^4 - t at t^3 = 1/4: a measure of separations."""
-MODELS: dict[str, Any] = {
-    "independent": None,
-    "first": {"model": "pairwise", "order": 1},
-    "second": {"model": "pairwise", "order": 2},
-}
+MODELS: dict[str, Any] = {"independent": None, "first": PAIRS[1], "second": PAIRS[2]}
 """Interactions by name; images of the patch are felt by pairs only."""
 _STD_HEIGHT, _STD_RADIUS = 0.15, 0.1
 _LEAST_DISTANCE = 0.7  # of the mean spacing
@@ -82,16 +78,7 @@ class Case(NamedTuple):
 
 def law(ensemble: xr.Dataset, separation: Floats, interaction: Any) -> dict[str, Floats]:
     """Return force, contact area and number of contacts by roughmdr along a path."""
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", rm.LimitWarning)  # slopes and range are no part of the model compared
-        found = rm.load_separation(
-            ensemble,
-            separation=separation,
-            effective_modulus=1.0,
-            work=WORK,
-            adhesion="jkr",
-            interaction=interaction,
-            variables=["force", "contact_area", "contact_count"],
-        )
     names = {"force": "force", "area": "contact_area", "count": "contact_count"}
+    asked = {"effective_modulus": 1.0, "work": WORK, "adhesion": "jkr", "interaction": interaction}
+    found = law_of(ensemble, separation=separation, variables=[*names.values()], **asked)
     return {short: found[name].to_numpy() for short, name in names.items()}

@@ -1,0 +1,269 @@
+"""Sticky random surfaces that are loaded and unloaded, with asperities independent or coupled in pairs."""
+
+import math
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+import xarray as xr
+
+import roughmdr as rm
+from studies.comparison import PAIRS, law_of, panels
+from studies.study import Study, named, table
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+MODULUS = 2e6  # [Pa]
+WORK = 0.05  # [J/m2]
+RADIUS = 50e-6  # [m]
+JUMP_ON_RADIUS = (2.0 * math.pi * WORK * RADIUS**2 / MODULUS) ** (1.0 / 3.0)  # [m], of a contact alone
+PULL_OFF_LENGTH = 0.75 * 4.0 ** (-1.0 / 3.0) * JUMP_ON_RADIUS**2 / RADIUS  # [m], how far a contact alone is stretched
+PULL_OFF_FORCE = 1.5 * math.pi * WORK * RADIUS  # [N], of a contact alone
+_DEPTH = 1.5  # of the pull-off length, below the mean height at closest approach
+_CLEAR = 2.0  # of the pull-off length, above the highest summit at both ends
+_LEAST_DISTANCE = 0.7  # of the mean distance
+STEPS = 30
+USUAL = {False: (100, 10.0), True: (36, 10.0)}
+"""Number of asperities where the distance varies, and distance where the number does."""
+SPREADS = {False: (0.3, 1.0, 3.0), True: (0.3, 1.0)}
+DISTANCES = {False: (5.0, 7.0, 10.0, 14.0, 20.0), True: (7.0, 20.0)}
+COUNTS = {False: (25, 50, 200, 400), True: (16,)}
+_COUNTED_SPREADS = (0.3, 1.0)
+REALIZATIONS = {False: 3, True: 2}
+UNITS = {"pull_off_force": "N", "dissipated_energy": "J"}
+_COLOURS = {0.3: "#1b6ca8", 1.0: "#c8553d", 3.0: "#3d8c5a"}
+MODELS: dict[str, Any] = {"independent": None, "coupled": PAIRS[2]}
+
+
+class Surface(NamedTuple):
+    """Equal paraboloids of normal heights that keep a distance."""
+
+    spread: float
+    """Standard deviation of the heights over the pull-off length."""
+    asperities: int
+    distance: float
+    """The side of the area for each asperity over the jump-on radius."""
+
+    def generate(self, realization: int) -> xr.Dataset:
+        """Return a realisation."""
+        spacing = self.distance * JUMP_ON_RADIUS
+        section = {
+            "source": "random", "shape": "paraboloid", "count": self.asperities, "radius": RADIUS,
+            "patch": math.sqrt(self.asperities) * spacing,
+            "placement": "hard_core", "min_distance": _LEAST_DISTANCE * spacing,
+            "height": {"distribution": "normal", "std": self.spread * PULL_OFF_LENGTH},
+        }  # fmt: skip
+        return rm.generate(section, seed=2026, realization=realization)
+
+
+class Cycle(NamedTuple):
+    """Numbers of a loading and unloading."""
+
+    pull_off_force: float
+    """[N], < 0, located between the steps."""
+    pull_off_contacts: float
+    contacts: float
+    """At closest approach."""
+    contact_fraction: float
+    """At closest approach."""
+    dissipated_energy: float
+    """[J]"""
+    avalanche: float
+    """Contacts in the largest avalanche, 1 where all are independent."""
+    marked: float
+    """Steps at which contacts are too near each other for a coupling in pairs."""
+
+
+def cycle(ensemble: xr.Dataset, interaction: Any, steps: int) -> Cycle:
+    """Return the numbers of loading in ``steps`` and of unloading in as many, until all contacts have parted."""
+    top = float(ensemble["height"].max()) + _CLEAR * PULL_OFF_LENGTH
+    law = along(ensemble, np.linspace(top, -_DEPTH * PULL_OFF_LENGTH, steps), interaction)
+    closest = law.isel(step=steps - 1)
+    return Cycle(
+        float(law["pull_off_force"]),
+        float(law["pull_off_contacts"]),
+        float(closest["contact_count"]),
+        float(closest["contact_fraction"]),
+        float(law["dissipated_energy"][-1]),
+        float(law.get("avalanche_size_max", 1.0)),
+        float(law.get("marked_steps", 0.0)),
+    )
+
+
+def along(ensemble: xr.Dataset, separation: np.ndarray, interaction: Any) -> xr.Dataset:
+    """Return the law of falling separations [m], followed by the same that rise."""
+    variables = ["force", "contact_count", "contact_fraction", "energy", "dissipated_energy"]
+    sticky = {"effective_modulus": MODULUS, "work": WORK, "adhesion": "jkr", "interaction": interaction}
+    return law_of(ensemble, separation=separation, unload=True, variables=variables, **sticky)
+
+
+def surfaces(quick: bool) -> list[Surface]:
+    """Return all surfaces."""
+    count, distance = USUAL[quick]
+    varied = [Surface(spread, count, each) for spread in SPREADS[quick] for each in DISTANCES[quick]]
+    return varied + [
+        Surface(spread, each, distance)
+        for spread in _COUNTED_SPREADS
+        for each in COUNTS[quick] + (() if distance in DISTANCES[quick] else (count,))
+    ]
+
+
+def measure(quick: bool) -> xr.Dataset:
+    """Return the numbers of the cycles of all surfaces, with each model and for each realisation."""
+    asked = surfaces(quick)
+    found = np.array([
+        [[cycle(ensemble, interaction, STEPS) for ensemble in realizations] for interaction in MODELS.values()]
+        for realizations in ([surface.generate(r) for r in range(REALIZATIONS[quick])] for surface in asked)
+    ])  # fmt: skip
+    over = ("surface", "model", "realization")
+    spread, asperities, distance = (list(each) for each in zip(*asked, strict=True))
+    result = xr.Dataset(
+        {
+            name: (over, found[..., i], named(name.replace("_", " "), UNITS.get(name, "1")))
+            for i, name in enumerate(Cycle._fields)
+        },
+        {
+            "model": list(MODELS),
+            "spread": ("surface", spread, named("standard deviation of the heights over the pull-off length")),
+            "asperities": ("surface", asperities, named("number of asperities")),
+            "distance": ("surface", distance, named("mean distance over the jump-on radius")),
+        },
+    )
+    result["refinement"] = ((), _refinement(quick), named("change of the pull-off force with twice as many steps"))
+    return result
+
+
+def _refinement(quick: bool) -> float:
+    """Return the largest relative change of the pull-off force with twice as many steps, over spreads and models."""
+    count, distance = USUAL[quick]
+    changes = []
+    for spread in _COUNTED_SPREADS:
+        ensemble = Surface(spread, count, distance).generate(0)
+        for interaction in MODELS.values():
+            coarse, fine = (cycle(ensemble, interaction, steps).pull_off_force for steps in (STEPS, 2 * STEPS))
+            changes.append(abs(coarse / fine - 1.0))
+    return max(changes)
+
+
+def change(result: xr.Dataset, name: str) -> xr.DataArray:
+    """Return by how much a number is larger in magnitude with coupling, relative, for each surface and realisation."""
+    return result[name].sel(model="coupled") / result[name].sel(model="independent") - 1.0
+
+
+def beyond_pairs(result: xr.Dataset) -> xr.DataArray:
+    """Return for which surfaces a coupling in pairs does not hold along the whole path."""
+    return (result["marked"].sel(model="coupled") > 0).any("realization")
+
+
+def draw(result: xr.Dataset) -> "Figure":
+    """Draw the change of the pull-off over distance and number of asperities, and the largest avalanches."""
+    figure, (left, middle, right) = panels(12.5, 4.3, 3)
+    pull_off = 100.0 * change(result, "pull_off_force")
+    size = result["avalanche"].sel(model="coupled")
+    dense = beyond_pairs(result).to_numpy()
+    at_usual_distance, at_usual_number = _series(result)
+    _points(left, result["distance"], pull_off, dense, at_usual_number)
+    _points(middle, result["asperities"], pull_off, dense, at_usual_distance)
+    _points(right, result["asperities"], size, dense, at_usual_distance)
+    ylabel = "change of the pull-off force by coupling [%]"
+    left.set(xlabel="mean distance over jump-on radius", ylabel=ylabel)
+    left.set_title(f"{_usual(result, at_usual_number, 'asperities')} asperities")
+    distance = _usual(result, at_usual_distance, "distance")
+    middle.set(xlabel="asperities", ylabel=ylabel, title=f"distance {distance} jump-on radii")
+    right.set(xlabel="asperities", ylabel="contacts in the largest avalanche")
+    right.set_title(f"distance {distance} jump-on radii")
+    for panel in (left, middle):
+        panel.axhline(0.0, color="0.6", lw=0.8)
+    for panel, ticks in ((left, result["distance"]), (middle, result["asperities"]), (right, result["asperities"])):
+        shown = at_usual_number if panel is left else at_usual_distance
+        values = np.unique(ticks.to_numpy()[shown])
+        panel.set_xscale("log")
+        panel.set_xticks(values, [f"{value:g}" for value in values])
+        panel.minorticks_off()
+    if dense[at_usual_number].any():
+        left.plot([], [], "o", color="0.4", mfc="white", label="too dense for pairs")
+    left.legend(fontsize=8, title="height spread over pull-off length", title_fontsize=8)
+    return figure
+
+
+def _series(result: xr.Dataset) -> tuple[np.ndarray, np.ndarray]:
+    """Return which surfaces have the usual distance with several numbers of asperities, and which the usual number."""
+    spread, distance, asperities = (result[name].to_numpy() for name in ("spread", "distance", "asperities"))
+    usual_number = np.bincount(asperities.astype(int)).argmax()
+    odd = asperities != usual_number
+    return np.isin(spread, spread[odd]) & (distance == distance[odd][0]), ~odd
+
+
+def _usual(result: xr.Dataset, among: np.ndarray, name: str) -> str:
+    return f"{float(result[name].to_numpy()[among][0]):g}"
+
+
+def _points(panel: "Axes", x: xr.DataArray, values: xr.DataArray, dense: np.ndarray, among: np.ndarray) -> None:
+    """Draw mean and standard deviation over the realisations, a colour for each height spread."""
+    spreads = np.unique(x["spread"].to_numpy()[among])
+    for number, spread in enumerate(spreads.tolist()):
+        own = np.flatnonzero(among & (x["spread"].to_numpy() == spread))
+        own = own[np.argsort(x.to_numpy()[own])]
+        beside = 1.025 ** (number - 0.5 * (spreads.size - 1))  # that bars do not cover each other
+        at, mean = beside * x.to_numpy()[own], values.mean("realization").to_numpy()[own]
+        scatter, colour = values.std("realization", ddof=1).to_numpy()[own], _COLOURS[spread]
+        panel.errorbar(at, mean, scatter, color=colour, lw=1.2, capsize=2.5, label=f"{spread:g}")
+        for open_ones, fill in ((False, colour), (True, "white")):
+            few = dense[own] == open_ones
+            panel.plot(at[few], mean[few], "o", color=colour, mfc=fill, ms=5.5, zorder=3)
+
+
+def report(result: xr.Dataset) -> str:
+    """Return a table of all surfaces, and how it was measured."""
+    alone = result.sel(model="independent")
+    coupled = result.sel(model="coupled")
+    pull_off, lost = change(result, "pull_off_force"), change(result, "dissipated_energy")
+    area = JUMP_ON_RADIUS**2
+    dense = beyond_pairs(result)
+    rows = []
+    for i in range(result.sizes["surface"]):
+        one, with_coupling = alone.isel(surface=i), coupled.isel(surface=i)
+        count = float(one["asperities"])
+        rows.append([
+            f"{float(one['spread']):g}", f"{count:g}", f"{float(one['distance']):g}{' *' if dense[i] else ''}",
+            f"{-float(one['pull_off_force'].mean()) / count / PULL_OFF_FORCE:.3f}",
+            f"{-float(with_coupling['pull_off_force'].mean()) / count / PULL_OFF_FORCE:.3f}",
+            _percent(pull_off[i]),
+            f"{float(one['dissipated_energy'].mean()) / count / (WORK * area):.3f}",
+            _percent(lost[i]),
+            f"{float(one['contacts'].mean()):.1f}, {float(with_coupling['contacts'].mean()):.1f}",
+            f"{float(with_coupling['avalanche'].mean()):.1f} ({float(with_coupling['avalanche'].mean()) / count:.1%})",
+            f"{float(with_coupling['contact_fraction'].mean()):.1%}",
+        ])  # fmt: skip
+    length, radius = (f"{1e6 * each:.3g} µm" for each in (PULL_OFF_LENGTH, JUMP_ON_RADIUS))
+    head = [
+        "spread", "asperities", "distance", "pull-off", "coupled", "change", "dissipated", "change",
+        "contacts, coupled", "largest avalanche", "contact fraction",
+    ]  # fmt: skip
+    return f"""The flat goes down to the same separation with both models, 1.5 pull-off lengths of {length} below
+the mean height, and up until all contacts have parted. Separations count from the deformed mean plane. Height spreads
+are in pull-off lengths, distances in jump-on radii of {radius}. Forces are per asperity over 1.5 pi w R of one
+alone, energies of the cycle per asperity over w times the square of the jump-on radius. Changes are between the
+models on the same surface, mean ± standard deviation over {result.sizes["realization"]} realisations. Contacts
+and contact fraction are those at closest approach, the largest avalanche is of making or of parting, and *
+stands where steps are marked: too dense for a coupling in pairs.
+
+{table(head, rows)}
+
+With twice as many steps the pull-off force changes by {float(result["refinement"]):.1g}.
+"""
+
+
+def _percent(values: xr.DataArray) -> str:
+    return f"{100.0 * float(values.mean()):+.2f} ± {100.0 * float(values.std(ddof=1)):.2f} %"
+
+
+STUDY = Study(
+    "coupled_pull_off", "Pull-off with and without coupling", measure, draw, report,
+    f"{USUAL[True][0]} in place of {USUAL[False][0]} asperities, "
+    f"at most {USUAL[True][0]} in place of {max(COUNTS[False])}; "
+    f"{len(DISTANCES[True])} of {len(DISTANCES[False])} distances, "
+    f"{len(SPREADS[True])} of {len(SPREADS[False])} spreads of heights, "
+    f"{REALIZATIONS[True]} of {REALIZATIONS[False]} realisations",
+)  # fmt: skip
