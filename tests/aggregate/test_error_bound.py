@@ -10,8 +10,8 @@ from oracles.jkr_power_law import JkrPowerLaw
 from oracles.multiprecision import mp
 from scenes import ensemble
 from studies import asperity_error
+from studies.asperity_error import ForceError, random_error
 from studies.asperity_error.asperities import DRAW
-from studies.asperity_error.judge import ForceError, random_error
 
 import roughmdr as rm
 from roughmdr.aggregate import loop, totals
@@ -123,7 +123,7 @@ def test_the_stated_error_of_random_asperities_holds_from_1e_12_of_the_fold_on(k
 
 
 @pytest.mark.large
-@pytest.mark.parametrize("group", asperity_error.groups(asperity_error.COUNT), ids=str)
+@pytest.mark.parametrize("group", asperity_error.groups(asperity_error.ASPERITIES), ids=str)
 def test_the_stated_error_of_very_many_random_asperities_holds(group: asperity_error.Group) -> None:
     assert not outside(*group)
 

@@ -5,9 +5,8 @@ from pathlib import Path
 import pytest
 import xarray as xr
 from forms import COMPILED, large
-from studies.stated_error import STUDY
-from studies.stated_error import judge as study
-from studies.stated_error.report import report
+from studies import stated_error as study
+from studies.stated_error import STUDY, report
 from studies.stated_error.scenes import ESTIMATORS, RandomScene, scene
 
 DEAR = 9

@@ -5,8 +5,7 @@ from collections.abc import Iterator
 import numpy as np
 import pytest
 from carried_out import CarriedOut, carried_out
-from studies.conductance import STUDY
-from studies.conductance.report import bounded, errors
+from studies.conductance import STUDY, bounded, errors
 
 
 @pytest.fixture(scope="module")

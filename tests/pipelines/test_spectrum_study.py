@@ -6,9 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from carried_out import CarriedOut, carried_out
-from studies.spectrum import STUDY
-from studies.spectrum.measure import METHODS, laws
-from studies.spectrum.report import means
+from studies.spectrum import METHODS, STUDY, laws, means
 
 
 @pytest.fixture(scope="module")

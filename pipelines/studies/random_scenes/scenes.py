@@ -16,8 +16,17 @@ from scipy.ndimage import gaussian_filter
 import roughmdr as rm
 from roughmdr.shapes import SCENE_SHAPES, SHAPES
 from roughmdr.variables import CONDUCTANCES, CURVE_VARIABLES
-from studies.random_scenes.numbers import Draw, Table, distribution, entry, number, power_of_ten, quantity, seldom
-from studies.random_scenes.relaxation import viscoelastic
+from studies.random_scenes.numbers import (
+    Draw,
+    Table,
+    distribution,
+    entry,
+    number,
+    power_of_ten,
+    quantity,
+    seldom,
+    viscoelastic,
+)
 
 _FILE_SIZE = 1e-6  # of the heights in files [m]
 # Powers of ten of shape parameters; of lengths over the size of all.

@@ -1,0 +1,158 @@
+"""Press realisations of surfaces of one spectrum as each source makes asperities of it."""
+
+import warnings
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import xarray as xr
+
+import roughmdr as rm
+from roughmdr.ensemble.spectral.section import SpectrumAsperities
+from studies.study import Study, named, table
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+HURST = (0.3, 0.5, 0.8)
+SHARES = (2.5, 2.0, 1.5, 1.0)
+"""Separations over the r.m.s. height."""
+METHODS = ("nayak", "nayak in pairs", "summits in pairs", "hills in pairs", "boundary elements")
+REALIZATIONS, QUICK = 64, 4
+_SIDE, _LONG, _SHORT = 1e-4, 5e-5, 6e-6
+_SLOPE = 1e-2  # small: nothing depends on it
+_PAIRS = {"model": "pairwise"}
+
+
+def surface(hurst: float) -> dict[str, Any]:
+    """Return the section [asperities] of maps of a Hurst exponent."""
+    waves = {"hurst": hurst, "long_wave": _LONG, "short_wave": _SHORT, "rms_slope": _SLOPE}
+    return {"source": "spectrum", "patch": _SIDE, **waves}
+
+
+def laws(hurst: float, realizations: int) -> dict[str, xr.Dataset]:
+    """Return forces over realisations and steps by each method; boundary elements press the maps of the hills."""
+    section = surface(hurst)
+    moments = SpectrumAsperities.model_validate(section).summits.moments
+    nayak = {"source": "nayak", "patch": _SIDE, **moments._asdict()}
+
+    def run(asperities: dict[str, Any], **more: Any) -> xr.Dataset:
+        return rm.run(
+            {
+                "title": "Surfaces of one spectrum",
+                "seed": 7,
+                "material": {"effective_modulus": 1.0},
+                "asperities": asperities,
+                "path": {"separation": [share * float(np.sqrt(moments.m0)) for share in SHARES]},
+                "output": {"variables": ["force", "contact_fraction"]},
+                "batch": {"realizations": realizations},
+                **more,
+            }
+        )
+
+    hills = run(section, interaction=_PAIRS, reference={"model": "boundary_elements"})
+    reference = {name: hills[f"reference_{name}"] for name in ("force", "contact_fraction")}
+    found = (
+        run(nayak),
+        run(nayak, interaction=_PAIRS),
+        run({**section, "model": "summits"}, interaction=_PAIRS),
+        hills,
+        xr.Dataset(reference),
+    )
+    return dict(zip(METHODS, found, strict=True))
+
+
+def measure(quick: bool) -> xr.Dataset:
+    """Press surfaces of three Hurst exponents, many of each or a few."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", rm.LimitWarning)
+        found = [laws(hurst, QUICK if quick else REALIZATIONS) for hurst in HURST]
+    over = ("hurst", "solver", "realization", "step")
+    numbers = {
+        name: np.array([[each[method][name].to_numpy() for method in METHODS] for each in found])
+        for name in ("force", "contact_fraction")
+    }
+    return xr.Dataset(
+        {
+            "force": (over, numbers["force"], named("force over the effective modulus", "m2")),
+            "contact_fraction": (over, numbers["contact_fraction"], named("contact area over nominal area")),
+        },
+        {
+            "hurst": ("hurst", list(HURST), named("Hurst exponent")),
+            "solver": list(METHODS),
+            "share": ("step", list(SHARES), named("separation over r.m.s. height")),
+        },
+    )
+
+
+_COLOURS = dict(zip(METHODS, ("0.55", "#56b4e9", "#0072b2", "#d55e00", "k"), strict=True))
+_MARKERS = dict(zip(METHODS, "voDs ", strict=True))
+
+
+def means(result: xr.Dataset) -> tuple[xr.DataArray, xr.DataArray]:
+    """Return the mean forces over that of boundary elements less 1, and their standard errors.
+
+    Those of hills and of summits of maps are of the differences on each map, the others of independent means.
+    """
+    force, count = result["force"], result.sizes["realization"]
+    true = force.sel(solver=METHODS[-1], drop=True)
+    mean = true.mean("realization")
+    paired = (force - true).std("realization", ddof=1)
+    alone = np.sqrt(force.var("realization", ddof=1) + true.var("realization", ddof=1))
+    spread = paired.where(force["solver"].isin(METHODS[2:]), alone)
+    return force.mean("realization") / mean - 1.0, spread / mean / np.sqrt(count)
+
+
+def report(result: xr.Dataset) -> str:
+    """Return the error of the mean force by each source, with its standard error."""
+    off, error = means(result)
+    rows = []
+    for hurst in result["hurst"].to_numpy():
+        for method in METHODS[:-1]:
+            at = {"hurst": hurst, "solver": method}
+            cells = zip(off.sel(at).to_numpy(), error.sel(at).to_numpy(), strict=True)
+            rows.append([f"{hurst:g}", method, *(f"{100 * each:+.1f} ± {100 * own:.1f} %" for each, own in cells)])
+        fraction = result["contact_fraction"].sel(hurst=hurst, solver=METHODS[-1]).mean("realization").to_numpy()
+        rows.append([f"{hurst:g}", "contact fraction", *(f"{100 * each:.2g} %" for each in fraction)])
+    head = ["H", "source", *(f"h = {share:g} rms" for share in result["share"].to_numpy())]
+    return (
+        f"Mean force of {result.sizes['realization']} patches of surfaces of one spectrum, over that of boundary "
+        "elements on the maps, less 1, with standard errors (of nayak, which draws other surfaces, of both means).\n\n"
+        f"{table(head, rows)}"
+    )
+
+
+def draw(result: xr.Dataset) -> "Figure":
+    """Draw the error of the mean force of each source over the contact fraction."""
+    from matplotlib.figure import Figure
+
+    off, error = means(result)
+    figure = Figure(figsize=(12.0, 4.4), layout="constrained")
+    panels = figure.subplots(1, result.sizes["hurst"], sharey=True)
+    fraction = 100.0 * result["contact_fraction"].sel(solver=METHODS[-1]).mean("realization")
+    for panel, hurst in zip(panels, result["hurst"].to_numpy(), strict=True):
+        for method in METHODS[:-1]:
+            at = {"hurst": hurst, "solver": method}
+            panel.errorbar(
+                fraction.sel(hurst=hurst).to_numpy(),
+                100.0 * off.sel(at).to_numpy(),
+                200.0 * error.sel(at).to_numpy(),
+                color=_COLOURS[method],
+                marker=_MARKERS[method],
+                capsize=3.0,
+                label=method,
+            )
+        panel.axhline(0.0, color="k", lw=0.8)
+        panel.set(xscale="log", xlabel="contact fraction [%]", title=f"Hurst exponent {hurst:g}")
+    panels[0].set_ylabel("mean force over boundary elements, less 1 [%]")
+    figure.legend(*panels[0].get_legend_handles_labels(), loc="outside lower center", ncols=4)
+    return figure
+
+
+STUDY = Study(
+    "spectrum",
+    "Sources nayak and spectrum against boundary elements",
+    measure,
+    draw,
+    report,
+    f"{QUICK} of {REALIZATIONS} realisations",
+)
