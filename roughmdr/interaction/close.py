@@ -47,9 +47,9 @@ class Pairs(NamedTuple):
         return bool((radius > self.radius).any())
 
 
-def find_pairs(at: Floats, radius: Floats, sides: Floats | None) -> Pairs:
-    """Return pairs nearer than ``NONE`` times their contact radii, which may grow."""
-    grown = np.where(radius > 0.0, _GROWTH * radius, 0.0)
+def find_pairs(at: Floats, radius: Floats, sides: Floats | None, growth: float = _GROWTH) -> Pairs:
+    """Return pairs nearer than ``NONE`` times their contact radii, which may grow so much."""
+    grown = np.where(radius > 0.0, growth * radius, 0.0)
     found = [np.empty((0, 2), np.int64)]
     for i, j, away in within_reach(at, 2.0 * NONE * grown, sides):
         keep = (away < NONE * (grown[i] + grown[j])) & (grown[j] <= grown[i])
@@ -106,14 +106,16 @@ def update_shares(pairs: Pairs, radius: Floats) -> None:
 
 
 @njit
-def take_from_field(pairs: Pairs, load: Floats, field: Floats) -> None:
-    """Take the expansion of close pairs out of the field of point loads."""
+def take_from_field(pairs: Pairs, load: Floats, order: int, field: Floats) -> None:
+    """Take the expansion of close pairs out of the field of point loads; to first order that has no derivatives."""
     for number in range(pairs.share.size):
         share = pairs.share[number]
         if share > 0.0:
             i, j = pairs.members[number]
             g, gx, gy, lap = point_load(pairs.apart[number, 0], pairs.apart[number, 1])
             for row, value, sign in ((0, g, 1.0), (1, gx, -1.0), (2, gy, -1.0), (3, lap, 1.0)):
+                if row > 0 and order == 1:
+                    break
                 field[row, i] -= share * value * load[j]
                 field[row, j] -= sign * share * value * load[i]
 

@@ -11,17 +11,13 @@ Lengths are over the side L of the patch, loads over pi E* L^2.
 """
 
 import math
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
 from roughmdr.interaction import close
-from roughmdr.interaction.newton import Coupling, State, System, first_order
+from roughmdr.interaction.coupling import Coupling, add_moments, field_of, first_order
 from roughmdr.numerics.arguments import Floats
-
-if TYPE_CHECKING:
-    from roughmdr.interaction.jkr.equilibrium import PairProblem
-    from roughmdr.interaction.jkr.equilibrium import State as AdhesiveState
 
 _RTOL = 0.01  # of a step
 _MAX_STEPS = 20
@@ -40,23 +36,6 @@ class Punches(NamedTuple):
     pairs: close.Pairs
     """Those that overlap."""
     order: int
-
-    @classmethod
-    def of(cls, system: System, state: State) -> "Punches":
-        """Return the punches of contacts without adhesion."""
-        contacts = state.contacts
-        radius = np.where(contacts.load > 0.0, contacts.radius, 0.0)
-        slid = -contacts.slide * state.slopes
-        pairs = state.pairs._replace(share=np.zeros_like(state.pairs.share))
-        close.update_shares(pairs, radius)
-        return cls(radius, slid, system.coupling, system.tangent, pairs, system.order)
-
-    @classmethod
-    def of_adhesive(cls, problem: "PairProblem", state: "AdhesiveState") -> "Punches":
-        """Return the punches of adhesive contacts; all of a problem are in contact."""
-        contacts, coupling = state.contacts, problem.coupling
-        slid = -contacts.lift * (state.field[1:3] + state.outer[1:3])
-        return cls(contacts.radius, slid, coupling, coupling, state.overlap.pairs, problem.order)
 
 
 def total_conductance(punches: Punches, error: float) -> float:
@@ -104,12 +83,11 @@ def _displacement(punches: Punches, load: Floats, whole: Floats, added: Floats) 
         displacement = coupling.potential(load)
         close.add_tangent(pairs, added, load, displacement)
         return displacement
-    field = coupling.field(load)
-    close.take_from_field(pairs, load, field)
+    field = field_of(coupling, pairs, punches.order, load)
     spread, tilting, (x, y) = a * a / 6.0, 4.0 / (3.0 * math.pi) * a**3, punches.slid
-    moments = spread * load, tilting * field[1] - x * load, tilting * field[2] - y * load
     displacement = np.asarray(field[0] + x * field[1] + y * field[2] + spread * field[3])
-    displacement += coupling.of_moments(*moments)
-    close.take_from_moments(pairs, *moments, displacement)
+    add_moments(
+        coupling, pairs, (spread * load, tilting * field[1] - x * load, tilting * field[2] - y * load), displacement
+    )
     close.add_tangent(pairs, whole, load, displacement)
     return displacement

@@ -11,7 +11,7 @@ to its order:
 """
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 
 from roughmdr.interaction.interface import Asperities, Contacts, CoupledKernels, Slid, Terms, kernel
 from roughmdr.interaction.tip_edge import edge_curvature, tipped, whole_edge
@@ -200,10 +200,8 @@ def respond(asperities: Asperities, field: Floats, contacts: Contacts) -> int:
 @once
 def coupled_kernels(kernels: Kernels) -> CoupledKernels:
     """Return the kernels of a shape without adhesion with what a displaced surface needs, and both loops, compiled."""
-    whole = CoupledKernels(f"coupled_{kernels.name}")
-    vars(whole).update(vars(kernels) | {"__name__": whole.__name__})
-    whole.pinned = kernels.name.endswith("flat_punch")
-    whole.edged = whole.pinned or (isinstance(kernels, ProfileKernels) and (kernels.flat or kernels.corner))
+    pinned = kernels.name.endswith("flat_punch")
+    edged = pinned or (isinstance(kernels, ProfileKernels) and (kernels.flat or kernels.corner))
     parts: dict[str, Callable[..., object]]
     if isinstance(kernels, ProfileKernels):
         parts = {
@@ -222,6 +220,16 @@ def coupled_kernels(kernels: Kernels) -> CoupledKernels:
             "top": top_of_power,
         }
     common = loaded_state, slid, edge_curvature, tipped, load_alone, respond
-    for name, part in (parts | {each.__name__: each for each in common}).items():
-        vars(whole)[name] = specialise(part, whole)
+    parts |= {each.__name__: each for each in common}
+    return with_parts(kernels, f"coupled_{kernels.name}", parts, pinned=pinned, edged=edged)
+
+
+def with_parts(
+    kernels: Kernels, name: str, parts: Mapping[str, Callable[..., object]], **constants: bool
+) -> CoupledKernels:
+    """Return kernels with more, which are compiled for them."""
+    whole = CoupledKernels(name)
+    vars(whole).update(vars(kernels) | {"__name__": name} | constants)
+    for part_name, part in parts.items():
+        vars(whole)[part_name] = specialise(part, whole)
     return whole

@@ -57,7 +57,7 @@ Tipped = tuple[float, float, float, float]
 
 
 class CoupledKernels(Kernels):
-    """Kernels of a shape without adhesion, with those that a displaced surface needs."""
+    """Kernels of a shape without adhesion, with those of contacts on a displaced surface."""
 
     pinned = False
     flat = False
@@ -86,6 +86,19 @@ class CoupledKernels(Kernels):
     """(load, tilt, ratio, params) -> a contact whose load leaves part of the edge of its tip out of contact."""
     load_alone: Callable[..., None]
     respond: Callable[..., int]
+
+    # Of adhesive contacts alone:
+    strain: Callable[..., float]
+    """(t, params) -> ∫ (g(a) - g)^2 dx over natural size and depth^2."""
+    held: Callable[..., float]
+    lift: Callable[..., float]
+    """(t, size, depth, params) -> lambda."""
+    slide: Callable[..., tuple[float, float, float]]
+    fill: Callable[..., None]
+    flanks: Callable[..., None]
+    edge: Callable[..., tuple[float, float, bool]]
+    next_state: Callable[..., float]
+    lone_load: Callable[..., float]
 
 
 kernel = CoupledKernels("kernel")

@@ -8,44 +8,23 @@ opens and closes, goes to where its last two steps cross 0.
 """
 
 import math
-from typing import NamedTuple, Protocol
+from typing import NamedTuple
 
 import numpy as np
-from scipy.sparse.linalg import LinearOperator, cg, gmres
+from scipy.sparse.linalg import LinearOperator, gmres
 
 from roughmdr.interaction import close
+from roughmdr.interaction.coupling import Coupling, add_moments, field_of, first_order
 from roughmdr.interaction.interface import Asperities, Contacts, CoupledKernels
 from roughmdr.numerics.arguments import Floats
 
 _MAX_STEPS = 40
-_RTOL, _MAX_ITERATIONS = 0.03, 100  # of a step
+_RTOL = 0.03  # of a step
 _LOST = 15, 0.05  # after so many steps one that changes so much of the load leads nowhere
 _LEAST_RATIO = 0.25  # of two steps that is counted on: a smaller one is luck, as each step leaves a few per cent
 _MOST_RATIO = 0.9  # and the largest: at rest, where only rounding is left, steps no longer fall
 _REMEMBERED = 8  # steps, the largest of which is the error of loads that do not come to rest
 _STIFFNESS_RTOL, _RESTART, _RESTARTS, _PROBE = 1e-6, 20, 5, 1e-5
-
-
-class Coupling(Protocol):
-    """How loads displace the surface at each asperity; ``Dense`` and ``Mesh``."""
-
-    error: float
-
-    def potential(self, load: Floats) -> Floats:
-        """Return the displacement by point loads."""
-        ...
-
-    def field(self, load: Floats) -> Floats:
-        """Return displacement, slopes and Laplacian by point loads, [row, asperity]."""
-        ...
-
-    def of_moments(self, laplacian: Floats, along_x: Floats, along_y: Floats) -> Floats:
-        """Return the displacement by sources of the Laplacian and of the slopes of G."""
-        ...
-
-    def least_displacement(self, load: Floats) -> float:
-        """Return about the least displacement between the points."""
-        ...
 
 
 class System(NamedTuple):
@@ -94,43 +73,19 @@ def evaluate(system: System, x: Floats, separation: float, pairs: close.Pairs | 
     if pairs is None or pairs.outgrown(contacts.punch):
         pairs = close.find_pairs(system.at, contacts.punch, system.sides)
     close.update_shares(pairs, contacts.punch)
-    load, lost = contacts.load, 0
-    if system.order == 1:
-        field = np.zeros((4, x.size))
-        kernels.respond(asperities, field, contacts)  # for the second moments, that close pairs need
-        field[0] = coupling.potential(load)
-        close.take_from_field(pairs, load, field)
-        displacement = field[0]
-    else:
-        field = coupling.field(load)
-        close.take_from_field(pairs, load, field)
-        lost = kernels.respond(asperities, field, contacts)
+    load, order = contacts.load, system.order
+    field = field_of(coupling, pairs, order, load)
+    lost = kernels.respond(asperities, field, contacts)
+    displacement = field[0].copy()
+    if order == 2:
         moments = 0.25 * contacts.second_moment, contacts.tilting * field[1], contacts.tilting * field[2]
-        displacement = field[0] + coupling.of_moments(*moments)
-        close.take_from_moments(pairs, *moments, displacement)
+        add_moments(coupling, pairs, moments, displacement)
     with np.errstate(invalid="ignore", divide="ignore"):
         excess = np.where(load > 0.0, contacts.second_moment / (load * contacts.punch**2), 0.0)
     close.add_contacts(pairs, contacts, excess, displacement)
     displacement = displacement + contacts.lift
     residual = x + displacement + (separation - asperities.height)
     return State(x, contacts, pairs, residual, displacement, lost, field[1:3])
-
-
-def first_order(
-    tangent: Coupling, pairs: close.Pairs, values: Floats, stiffness: Floats, right: Floats, rtol: float
-) -> Floats:
-    """Return the loads of contacts with (1/k + G) P = right, 0 where k is 0; ``values`` add to G of the pairs."""
-    root = np.sqrt(stiffness)
-
-    def product(scaled: Floats) -> Floats:
-        load = root * scaled.ravel()
-        potential = tangent.potential(load)
-        close.add_tangent(pairs, values, load, potential)
-        return scaled.ravel() + root * potential
-
-    operator = LinearOperator((root.size, root.size), matvec=product, dtype=np.float64)
-    found, _ = cg(operator, root * right, rtol=rtol, atol=0.0, maxiter=_MAX_ITERATIONS)
-    return np.asarray(root * found)
 
 
 def _step(system: System, state: State, values: Floats, right: Floats, rtol: float) -> Floats:

@@ -29,7 +29,11 @@ class Placed:
         if interaction.boundary == "free" or sides is None:
             whole = float(np.ptp(at, axis=0).max())
             sides = (whole, whole) if whole > 0.0 else (1.0, 1.0)
-        self.length, self.interaction = sides[0], interaction
+        self.length, self.interaction, self.total = sides[0], interaction, ensemble.height.size
+        self.modulus = effective_modulus
+        """[Pa]."""
+        self.force_unit = math.pi * effective_modulus * self.length * self.length
+        """[N], of loads."""
         self.patch = Periodic.of(sides[1] / sides[0])
         _check_apart(ensemble, at / self.length, self.sides)
         if ensemble.origin == "hills":  # each is a part of the surface

@@ -13,14 +13,14 @@ from roughmdr.ensemble.ensemble import Ensemble
 from roughmdr.interaction import close
 from roughmdr.interaction.conductance import Punches, total_conductance
 from roughmdr.interaction.contacts import coupled_kernels
-from roughmdr.interaction.crowding import crowding
+from roughmdr.interaction.coupling import Coupling
 from roughmdr.interaction.dense import Dense
 from roughmdr.interaction.green import Periodic
 from roughmdr.interaction.mesh import Mesh
-from roughmdr.interaction.newton import Coupling, Equilibrium, State, System, solve, total_stiffness
+from roughmdr.interaction.newton import Equilibrium, State, System, solve, total_stiffness
 from roughmdr.interaction.placed_asperities import Placed
 from roughmdr.interaction.settings import DEFAULT_ERROR, Boundary, Interaction
-from roughmdr.interaction.totals import CROWDING, Overlap, Step
+from roughmdr.interaction.totals import Step, of_all, total
 from roughmdr.numerics.arguments import Floats
 from roughmdr.numerics.underway import each_step
 from roughmdr.shapes import SHAPES
@@ -92,7 +92,7 @@ class Flat:
 
     def __init__(self, ensemble: Ensemble, effective_modulus: float, interaction: Interaction, names: set[str]) -> None:
         self.candidates = Candidates(ensemble, effective_modulus, interaction)
-        self._modulus, self._names = effective_modulus, names
+        self._names = names
         self._steps = dict[float, Step]()
         self._last, self._x, self._rate = math.inf, np.empty(0), np.empty(0)
         self._failures, self._lowest = 0, -math.inf
@@ -107,7 +107,7 @@ class Flat:
             return Step(error=math.inf), None
         found = _settle(self.candidates, h, self._last, self._x, self._rate)
         self.visits += self.candidates.count
-        self._steps[h] = step = _totals(self.candidates, found, h, self._modulus, self._names)
+        self._steps[h] = step = _totals(self.candidates, found, h, self._names)
         if not math.isfinite(found.error):
             self._failures += 1
             self._lowest = h if self._failures == _FAILURES else self._lowest
@@ -139,12 +139,10 @@ def solve_path(
         steps.append(step)
         if found is not None and (h < told if at is None else h == told):
             state, told = found, h
-    radius, force = np.zeros_like(ensemble.height), np.zeros_like(ensemble.height)
+    radius, force = np.zeros((2, ensemble.height.size))
     if state is not None:
-        candidates = flat.candidates
-        load, kept, length = state.contacts.load, candidates.kept[: state.x.size], candidates.length
-        radius[kept] = np.where(load > 0.0, state.contacts.radius, 0.0) * length
-        force[kept] = math.pi * effective_modulus * length * length * load
+        contacts = state.contacts
+        radius, force = of_all(flat.candidates, contacts.load > 0.0, contacts.radius, contacts.load)
     return Coupled(steps, radius, force, flat.visits)
 
 
@@ -175,49 +173,32 @@ def _settle(candidates: Candidates, h: float, last: float, x: Floats, moved: Flo
         x, moved, last = found.state.x, np.empty(0), math.inf
 
 
-def _totals(candidates: Candidates, found: Equilibrium, h: float, modulus: float, names: set[str]) -> Step:
+def _totals(candidates: Candidates, found: Equilibrium, h: float, names: set[str]) -> Step:
     """Return the totals of an equilibrium in SI."""
     if not math.isfinite(found.error):
         return Step(error=math.inf)
-    contacts, pairs, length = found.state.contacts, found.state.pairs, candidates.length
+    state, contacts, system = found.state, found.state.contacts, candidates.system
     touching = contacts.load > 0.0
     if not touching.any():
         return Step()
-    overlapping = np.zeros(touching.size, dtype=np.bool_)
-    close.mark_overlaps(pairs, np.where(touching, contacts.radius, 0.0), overlapping)
-    load = math.fsum(contacts.load.tolist())
-    force = math.pi * modulus * length * length * load
-    share, count = float(contacts.load[overlapping].sum()) / load, touching.size
-    near = 0.0
-    if CROWDING in names:
-        near = crowding(
-            candidates.at[:count],
-            contacts.radius,
-            contacts.load,
-            candidates.sides,
-            candidates.emerging[:count],
-            candidates.interaction.order,
-            contacts.punch,
-        )
-    overlap = Overlap(int(overlapping.sum()), share, near)
-    rigidity = total_stiffness(candidates.system, found.state, h) if "stiffness" in names else 0.0
-    conductance = 0.0
+    step = total(candidates, touching, contacts.radius, contacts.load, state.pairs, names, contacts.punch)
+    stiffness = conductance = 0.0
+    if "stiffness" in names:
+        stiffness = math.pi * candidates.modulus * candidates.length * total_stiffness(system, state, h)
     if "conductance_radius" in names:
-        punches = Punches.of(candidates.system, found.state)
-        conductance = length * total_conductance(punches, candidates.interaction.error)
-    if math.isnan(rigidity + conductance):
+        conductance = candidates.length * total_conductance(_punches(system, state), candidates.interaction.error)
+    if math.isnan(stiffness + conductance):
         return Step(error=math.inf)
-    return Step(
-        force,
-        length * math.fsum(contacts.radius[touching].tolist()),
-        math.pi * length * length * math.fsum((contacts.radius[touching] ** 2).tolist()),
-        math.pi * modulus * length * rigidity,
-        int(touching.sum()),
-        force * (found.error + candidates.system.coupling.error),
-        overlap,
-        found.state.lost,
-        conductance=conductance,
-    )
+    error = step.error * (found.error + system.coupling.error)
+    return step._replace(stiffness=stiffness, error=error, lost=state.lost, conductance=conductance)
+
+
+def _punches(system: System, state: State) -> Punches:
+    """Return the contacts as punches that stay level."""
+    contacts, pairs = state.contacts, state.pairs._replace(share=np.zeros_like(state.pairs.share))
+    radius = np.where(contacts.load > 0.0, contacts.radius, 0.0)
+    close.update_shares(pairs, radius)
+    return Punches(radius, -contacts.slide * state.slopes, system.coupling, system.tangent, pairs, system.order)
 
 
 def prepare(shape: str) -> None:

@@ -1,6 +1,32 @@
-"""The totals of coupled asperities at one separation."""
+"""The totals of coupled asperities at one separation, with the error that contacts near to each other leave.
 
+Where they do not overlap it falls off as a power of their distance: what an order leaves out. Where they do, it grows
+with how far they reach into each other. A contact that reaches to where the flank of a buried summit comes out is no
+disc either. Against boundary elements of ensembles (``pipelines/versus_bem.py``). Where neighbours tilt the surface so
+that a contact does not reach the whole edge of its tip, its load is a little too large (``tip_edge.py``).
+"""
+
+import math
 from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from roughmdr.interaction import close
+from roughmdr.interaction.neighbours import within_reach
+from roughmdr.interaction.placed_asperities import Placed
+from roughmdr.numerics.arguments import Floats
+
+_NEAR: dict[int, tuple[float, float]] = {1: (0.02, 3.0), 2: (0.004, 6.0)}
+"""Error by a neighbour that touches, and the power of distance over summed radii with which it falls, by order."""
+_OVERLAP = 0.45
+"""Error by a neighbour over 1 - D/(a + a'), the depth of the overlap."""
+_BURIED = 0.22
+"""Error by a buried summit over 1 - r/a, r where its flank comes out."""
+_PARTIAL = 0.4
+"""Error of a tilted flat-ended punch over (1 - a/b)^(3/2), b its radius (``tests/interaction/test_tip_edge.py``)."""
+_FARTHEST = 2.5
+"""Distance over summed radii beyond which neighbours are left out."""
 
 CROWDING = "crowding"
 """Asks for it among the names of variables."""
@@ -41,3 +67,75 @@ class Step(NamedTuple):
     contacts that overlap."""
     held: float = 0.0
     """Pull-off forces of all other contacts."""
+
+
+def total(
+    placed: Placed,
+    touching: NDArray[np.bool_],
+    radius: Floats,
+    load: Floats,
+    pairs: close.Pairs,
+    names: set[str],
+    punch: Floats | None = None,
+) -> Step:
+    """Return what follows from the contacts of the highest asperities, with the error of a relative one of 1.
+
+    The crowding is there where ``names`` asks for it; ``punch`` as ``whole`` of that.
+    """
+    sizes = math.fsum(np.abs(load[touching]).tolist())
+    overlapping, length = np.zeros(touching.size, np.bool_), placed.length
+    close.mark_overlaps(pairs, np.where(touching, radius, 0.0), overlapping)
+    share = float(np.abs(load[overlapping]).sum()) / sizes if sizes > 0.0 else 0.0
+    near = 0.0
+    if CROWDING in names:
+        at, emerging = placed.at[: load.size], placed.emerging[: load.size]
+        near = crowding(
+            at, radius, np.where(touching, load, 0.0), placed.sides, emerging, placed.interaction.order, punch
+        )
+    return Step(
+        placed.force_unit * math.fsum(load[touching].tolist()),
+        length * math.fsum(radius[touching].tolist()),
+        math.pi * length * length * math.fsum((radius[touching] ** 2).tolist()),
+        contacts=int(np.count_nonzero(touching)),
+        error=placed.force_unit * sizes,
+        overlap=Overlap(int(overlapping.sum()), share, near),
+    )
+
+
+def of_all(placed: Placed, touching: NDArray[np.bool_], radius: Floats, load: Floats) -> tuple[Floats, Floats]:
+    """Return contact radii [m] and forces [N] of all asperities, those that are buried among them."""
+    kept, (radii, forces) = placed.kept[: touching.size], np.zeros((2, placed.total))
+    radii[kept] = np.where(touching, radius, 0.0) * placed.length
+    forces[kept] = np.where(touching, load, 0.0) * placed.force_unit
+    return radii, forces
+
+
+def crowding(
+    at: Floats,
+    radius: Floats,
+    load: Floats,
+    sides: Floats | None,
+    emerging: Floats,
+    order: int,
+    whole: Floats | None = None,
+) -> float:
+    """Return about the relative error of the force of contacts by those near to each other, at low contact fractions.
+
+    Positions [asperity, 2], contact radii, ``sides`` of a patch that repeats and the radii from which on the flanks of
+    buried summits are in a contact, in one unit; loads in any, 0 out of contact. ``whole`` are the radii with the whole
+    edge of their tips in contact, where they may be larger.
+    """
+    on = np.flatnonzero(load)
+    if not on.size:
+        return 0.0
+    a, share = radius[on], np.abs(load[on]) / np.sum(np.abs(load[on]))
+    total = _BURIED * float(np.sum(share * np.maximum(1.0 - emerging[on] / a, 0.0)))
+    if whole is not None:
+        total += _PARTIAL * float(np.sum(share * np.maximum(1.0 - a / whole[on], 0.0) ** 1.5))
+    touching, power = _NEAR[order]
+    for i, j, away in within_reach(at[on], 2.0 * _FARTHEST * a, sides):
+        apart = away / (a[i] + a[j])
+        error = touching * np.maximum(apart, 1.0) ** -power + _OVERLAP * np.maximum(1.0 - apart, 0.0)
+        once = ((a[j] < a[i]) | ((a[j] == a[i]) & (j < i))) & (apart < _FARTHEST)
+        total += float(np.sum(np.where(once, error * (share[i] + share[j]), 0.0)))
+    return total

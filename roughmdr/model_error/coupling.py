@@ -12,7 +12,7 @@ _SEPARATED, _POWER = 0.18, 2.5
 _FIRST, _THIRD, _FULLER = 0.65, 1.5, 3.0
 """Error of separated contacts to first order, (a/D)^3: factor, power of the contact fraction, and growth with it."""
 _CROWDED = 5.0
-"""Growth with the contact fraction of the error by contacts near to each other (``interaction/crowding.py``); to first
+"""Growth with the contact fraction of the error by contacts near to each other (``interaction/totals.py``); to first
 order that error cancels a part of the error by terms left out."""
 _TYPICAL_CROWDING = 0.15
 """Crowding over the share of the force of overlapping contacts, where their distances are not known."""

@@ -15,10 +15,10 @@ import roughmdr as rm
 from roughmdr.elements.path import solve_on_grid
 from roughmdr.elements.surface import surface_of_asperities
 from roughmdr.ensemble.ensemble import Ensemble
-from roughmdr.interaction import solve
+from roughmdr.interaction import totals
 from roughmdr.interaction.buried import buried
-from roughmdr.interaction.crowding import crowding
 from roughmdr.interaction.neighbours import within_reach
+from roughmdr.interaction.totals import crowding
 
 POINTS = 192
 
@@ -127,7 +127,7 @@ def test_a_machine_asks_for_the_errors_of_its_steps_only(monkeypatch: pytest.Mon
         calls.append(arguments[0].shape[0])
         return crowding(*arguments)
 
-    monkeypatch.setattr(solve, "crowding", counted)
+    monkeypatch.setattr(totals, "crowding", counted)
     monkeypatch.setattr("roughmdr.aggregate.neighbours_error.error_by_distances", None)
     asperities = rm.generate({**ASPERITIES, "count": 30, "patch": "0.5 mm", "placement": "random"}, seed=1)
     path = {"remote": ["1 um", "0.5 um", "0 um"], "machine_stiffness": "1000 N/m"}
@@ -146,7 +146,7 @@ def test_the_error_of_an_adhesive_hill_goes_by_whether_it_may_have_jumped_on(
 
     How near contacts are is not asked.
     """
-    monkeypatch.setattr("roughmdr.interaction.jkr.account.crowding", None)
+    monkeypatch.setattr(totals, "crowding", None)
     hill = ensemble([0.0], area=1.0, radius=1e3, x=[0.2], y=[0.5])
     hill.attrs["asperity_model"] = "hills"
     path: dict[str, Any] = {"separation": 1e-6 * np.array([1.0, 0.5, -1.0, 0.5, 1.0])}
@@ -198,7 +198,7 @@ def test_overlapping_contacts_of_adhesive_hills_are_in_doubt_as_a_whole() -> Non
 
 
 def test_of_hills_nothing_is_asked_for_that_their_error_does_not_use(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(solve, "crowding", None)
+    monkeypatch.setattr(totals, "crowding", None)
     pair = ensemble([0.0, -1e-6], area=1.0, radius=1e3, x=[0.2, 0.7], y=[0.5, 0.5])
     pair.attrs["asperity_model"] = "hills"
     law = rm.load_separation(pair, separation=[-1e-5], effective_modulus=1e9, interaction={"model": "pairwise"})

@@ -9,19 +9,18 @@ import pytest
 from numpy.typing import NDArray
 
 import roughmdr as rm
+from roughmdr.interaction import close
 from roughmdr.interaction.dense import Dense
 from roughmdr.interaction.green import Periodic
-from roughmdr.interaction.interface import Asperities
+from roughmdr.interaction.interface import Asperities, CoupledKernels
 from roughmdr.interaction.jkr import coincident, equilibrium, factors
 from roughmdr.interaction.jkr.bracket import Bracket
 from roughmdr.interaction.jkr.contacts import Contacts
 from roughmdr.interaction.jkr.equilibrium import Drive, PairProblem, State, Step, evaluate
 from roughmdr.interaction.jkr.factors import Factors
 from roughmdr.interaction.jkr.front import jkr_kernels
-from roughmdr.interaction.jkr.interface import JkrKernels
 from roughmdr.interaction.jkr.lone import Surface
-from roughmdr.interaction.jkr.mixing import Mixing
-from roughmdr.interaction.jkr.tangent import Tangent
+from roughmdr.interaction.jkr.tangent import Mixing, Tangent
 from roughmdr.kernels.adhesion import Adhesion
 from roughmdr.kernels.choose import choose
 from roughmdr.kernels.interface import Columns
@@ -41,7 +40,7 @@ EXAMPLES: dict[str, Shape] = {
 }
 
 
-def kernels_of(shape: Shape, count: int) -> tuple[JkrKernels, Asperities]:
+def kernels_of(shape: Shape, count: int) -> tuple[CoupledKernels, Asperities]:
     """Return the kernels of equal asperities, in a patch of side 1 m."""
     width, rise, params = shape.nondimensional()
     own = np.array([params], dtype=np.float64).reshape(1, -1)
@@ -53,7 +52,7 @@ def kernels_of(shape: Shape, count: int) -> tuple[JkrKernels, Asperities]:
     return law, Asperities(np.zeros(count), np.full(count, depth), np.full(count, size), made)
 
 
-def flanks(law: JkrKernels, asperities: Asperities, natural: Floats, h: float) -> Floats:
+def flanks(law: CoupledKernels, asperities: Asperities, natural: Floats, h: float) -> Floats:
     """Return the radii that decide on overlap under a flat at h, and their slopes over it."""
     found = np.empty((2, natural.size))
     law.flanks(np.arange(natural.size), h, natural, asperities, found)
@@ -78,7 +77,7 @@ def guess(shape: Shape, at: Floats, order: int, *, overlapping: bool = False) ->
         t[i] = law.next_state(0.0, True, Surface(depth), WORK, i, asperities)
         load[i] = 1.2 * law.lone_load(t[i], Surface(depth), WORK, i, asperities)
     inside = np.ones(len(at), np.bool_)
-    near = coincident.Near(law, asperities, natural, coincident.find(at, radius * overlapping, None))
+    near = coincident.Near(law, asperities, natural, close.find_pairs(at, radius * overlapping, None, growth=1.0))
     problem = PairProblem(law, asperities, coupling, near, order, WORK, natural)
     return problem, evaluate(problem, inside, t, load, -1e-6, np.zeros((5, len(at))))
 
@@ -277,6 +276,14 @@ def test_mixing_solves_a_linear_iteration_in_as_many_steps_as_unknowns(count: in
         mixing.go(way)
         at = at + way
     np.testing.assert_allclose(at, exact, rtol=1e-8)
+
+
+def test_a_step_that_no_float_holds_is_left_as_it_is() -> None:
+    """So that who takes it sees that there is no equilibrium."""
+    mixing = Mixing()
+    mixing.go(mixing.improved(np.ones(2)))
+    for step in ([math.nan, 1.0], [1.0, math.inf]):
+        np.testing.assert_array_equal(mixing.improved(np.array(step)), step)
 
 
 @pytest.mark.parametrize("periodic", [False, True])

@@ -4,17 +4,15 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from roughmdr.interaction import close
 from roughmdr.interaction.conductance import Punches, total_conductance
-from roughmdr.interaction.crowding import crowding
 from roughmdr.interaction.jkr.equilibrium import State, alone, energy
 from roughmdr.interaction.jkr.front import Front, Piece
 from roughmdr.interaction.jkr.jumps import Avalanche
 from roughmdr.interaction.jkr.lone import MOST_SLIDE
 from roughmdr.interaction.jkr.tension import Tension, largest_between, slope
-from roughmdr.interaction.totals import CROWDING, Overlap, Step
+from roughmdr.interaction.totals import Step, of_all, total
 from roughmdr.loading.pull_off import PullOff
 from roughmdr.numerics.arguments import Floats
 from roughmdr.schema.units import format_quantity
@@ -42,29 +40,20 @@ class Adhering(NamedTuple):
 
 
 class Account:
-    """The totals of the contacts of a front so far; E* [Pa], of ``total`` asperities with those that are buried.
+    """The totals of the contacts of a front so far.
 
     Radius and force of each are kept where the flat is closest, or at step number ``at``. ``reach`` is the distance
     from which contacts may jump on, over their stretch where they detach; 0 where that is not asked for.
     """
 
     def __init__(
-        self,
-        front: Front,
-        modulus: float,
-        total: int,
-        names: set[str],
-        *,
-        rises: bool,
-        at: int | None = None,
-        reach: float = 0.0,
+        self, front: Front, names: set[str], *, rises: bool, at: int | None = None, reach: float = 0.0
     ) -> None:
-        self._front, self._modulus, self._names = front, modulus, names
-        self._length = front.placed.length
-        self.energy_unit = modulus * self._length**3
+        self._front, self._names, self._length = front, names, front.length
+        self.energy_unit = front.modulus * front.length**3
         """Of energies in units of the patch [J]."""
         self._steps, self._separation, self._avalanches = list[Step](), list[float](), list[Avalanche]()
-        self._radius, self._force = np.zeros(total), np.zeros(total)
+        self._radius, self._force = np.zeros((2, front.total))
         self._at, self._closest, self._reach = at, math.inf, _STRETCH * reach
         self._tension = Tension() if rises else None
         self.dissipated = self.machine_dissipated = 0.0
@@ -95,9 +84,7 @@ class Account:
         closer = state.separation < self._closest
         self._closest = min(state.separation, self._closest)
         if closer if self._at is None else len(self._steps) - 1 == self._at:
-            kept, force = self._front.placed.kept[: state.t.size], math.pi * self._modulus * self._length**2
-            self._radius[kept] = np.where(state.inside, state.contacts.radius, 0.0) * self._length
-            self._force[kept] = np.where(state.inside, state.load, 0.0) * force
+            self._radius, self._force = of_all(self._front, state.inside, state.contacts.radius, state.load)
 
     def result(self) -> Adhering:
         """Return all of it."""
@@ -114,52 +101,40 @@ class Account:
         )
 
     def _totals(self, state: State, *, flown: bool) -> Step:
-        problem, length = self._front.problem, self._length
-        lost = self.dissipated + self.machine_dissipated, self.machine_dissipated
-        overlapping = np.zeros(state.t.size, np.bool_)
-        close.mark_overlaps(problem.near.pairs, np.where(state.inside, state.contacts.radius, 0.0), overlapping)
-        doubted, held = self._pull_offs(state, overlapping) if self._reach > 0.0 and not flown else (0.0, 0.0)
-        if not state.inside.any():
-            return Step(dissipated=lost[0], by_machine=lost[1], doubted=doubted)
-        on = np.flatnonzero(state.inside)
-        radius, load = state.contacts.radius[on], state.load[on]
-        unit = math.pi * self._modulus * length * length
+        front, problem, on = self._front, self._front.problem, state.inside
+        lost, by_machine = self.dissipated + self.machine_dissipated, self.machine_dissipated
+        step = total(front, on, state.contacts.radius, state.load, problem.near.pairs, self._names)
+        doubted, held = self._pull_offs(state) if self._reach > 0.0 and not flown else (0.0, 0.0)
+        if not on.any():
+            return Step(dissipated=lost, by_machine=by_machine, doubted=doubted)
         stiffness = conductance = 0.0
         if "stiffness" in self._names:
-            stiffness = -slope(*alone(problem, state))
+            stiffness = front.force_unit / front.length * -slope(*alone(problem, state))
         if "conductance_radius" in self._names:
-            conductance = length * self._conductance(state)
+            conductance = front.length * self._conductance(state)
             if math.isnan(conductance):
                 return Step(error=math.inf)
-        sizes = math.fsum(np.abs(load).tolist())
-        share = float(np.abs(state.load[overlapping]).sum()) / sizes if sizes > 0.0 else 0.0
         tilt = np.hypot(*(state.field[1:3, on] + state.outer[1:3, on]))
-        return Step(
-            unit * math.fsum(load.tolist()),
-            length * math.fsum(radius.tolist()),
-            math.pi * length * length * math.fsum((radius * radius).tolist()),
-            unit / length * stiffness,
-            on.size,
-            unit * sizes * (_SOLVER_ERROR + problem.coupling.error),
-            Overlap(int(overlapping.sum()), share, self._crowding(state) if CROWDING in self._names else 0.0),
-            int(np.count_nonzero(tilt * state.contacts.lift[on] > MOST_SLIDE * radius)),
-            self.energy_unit * energy(problem, state) if "energy" in self._names else 0.0,
-            *lost,
-            conductance,
-            doubted,
-            held,
+        slides = tilt * state.contacts.lift[on] > MOST_SLIDE * state.contacts.radius[on]
+        return step._replace(
+            stiffness=stiffness,
+            error=step.error * (_SOLVER_ERROR + problem.coupling.error),
+            lost=int(np.count_nonzero(slides)),
+            energy=self.energy_unit * energy(problem, state) if "energy" in self._names else 0.0,
+            dissipated=lost,
+            by_machine=by_machine,
+            conductance=conductance,
+            doubted=doubted,
+            held=held,
         )
-
-    def _crowding(self, state: State) -> float:
-        placed, count = self._front.placed, state.t.size
-        load = np.where(state.inside, state.load, 0.0)
-        order = placed.interaction.order
-        return crowding(placed.at[:count], state.contacts.radius, load, placed.sides, placed.emerging[:count], order)
 
     def _conductance(self, state: State) -> float:
         """Return the conductance radius of the contacts as they are, whatever adhesion does to their stiffness."""
-        punches = Punches.of_adhesive(*alone(self._front.problem, state))
-        return total_conductance(punches, self._front.placed.interaction.error)
+        problem, state = alone(self._front.problem, state)
+        slid = -state.contacts.lift * (state.field[1:3] + state.outer[1:3])
+        both = problem.coupling, problem.coupling
+        punches = Punches(state.contacts.radius, slid, *both, state.overlap.pairs, problem.order)
+        return total_conductance(punches, self._front.interaction.error)
 
     def _pull_off(self) -> PullOff:
         """Return the largest tension in SI; NaN where no unloading ends with all contacts parted."""
@@ -169,21 +144,24 @@ class Account:
         if tension.force == 0.0:
             return PullOff(0.0)
         area = math.pi * length * length * tension.radius_squares
-        force = math.pi * self._modulus * length * length * tension.force
-        return PullOff(force, length * tension.separation, float(tension.contacts), area)
+        return PullOff(
+            self._front.force_unit * tension.force, length * tension.separation, float(tension.contacts), area
+        )
 
-    def _pull_offs(self, state: State, overlapping: NDArray[np.bool_]) -> tuple[float, float]:
+    def _pull_offs(self, state: State) -> tuple[float, float]:
         """Return the sums of 3/2 pi w R of those that may have jumped on or overlap, and of other contacts.
 
         R is that of the paraboloid that jumps on with as large a contact.
         """
         front, count = self._front, state.t.size
+        overlapping = np.zeros(count, np.bool_)
+        close.mark_overlaps(front.problem.near.pairs, np.where(state.inside, state.contacts.radius, 0.0), overlapping)
         alone = 1.5 * math.pi * np.sqrt(front.work * front.made**3 / (2.0 * math.pi))
-        gap, inside = front.placed.height - state.separation, np.zeros(alone.size, np.bool_)
+        gap, inside = front.height - state.separation, np.zeros(alone.size, np.bool_)
         gap[:count], inside[:count] = state.gap, state.inside
         doubted = ~inside & (gap > -self._reach * front.natural)
         doubted[:count] |= overlapping
-        unit = self._modulus * self._length**2
+        unit = front.modulus * self._length**2
         return unit * math.fsum(alone[doubted].tolist()), unit * math.fsum(alone[inside & ~doubted].tolist())
 
     def _crowded(self) -> str:

@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from roughmdr.interaction.jkr.bracket import Bracket
-from roughmdr.interaction.jkr.equilibrium import Drive, PairProblem, State, Step, evaluate, moved
+from roughmdr.interaction.jkr.equilibrium import Drive, PairProblem, State, Step, interpolated, moved
 from roughmdr.interaction.jkr.factors import Factors, Lead
 from roughmdr.interaction.jkr.newton import newton
 from roughmdr.interaction.jkr.tangent import Tangent, leading
@@ -210,9 +210,8 @@ def between(
     """Return the guess at a place between two others or near them, a ``part`` of the way, else in proportion."""
     state, new, change = here.state, there.state, along - here.along
     part = change / (there.along - here.along) if part is None else part
-    t, load = state.t + part * (new.t - state.t), state.load + part * (new.load - state.load)
     separation, outer = state.separation + drive.separation * change, state.outer + drive.outer * change
-    return evaluate(problem, state.inside, t, load, separation, outer)
+    return interpolated(problem, state, new, part, separation, outer)
 
 
 def _fold(

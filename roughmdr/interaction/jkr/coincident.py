@@ -23,9 +23,7 @@ from scipy.special import i0e, i1e
 
 from roughmdr.interaction import close
 from roughmdr.interaction.close import FULL, NONE
-from roughmdr.interaction.interface import Asperities
-from roughmdr.interaction.jkr.interface import JkrKernels, kernel
-from roughmdr.interaction.neighbours import within_reach
+from roughmdr.interaction.interface import Asperities, CoupledKernels, kernel
 from roughmdr.numerics.arguments import Floats
 
 _FAR = 1e-6  # D^2/4s^2 beyond the inverse of this has no digits more
@@ -68,20 +66,6 @@ def flanks(which: NDArray[np.int64], h: float, natural: Floats, asperities: Aspe
         out[1, number] = -0.5 * begun * size * da / (rise * dg)
 
 
-def find(at: Floats, bound: Floats, sides: Floats | None) -> close.Pairs:
-    """Return the pairs that overlap where their radii reach ``bound``."""
-    found = [np.empty((0, 2), np.int64)]
-    for i, j, away in within_reach(at, 2.0 * NONE * bound, sides):
-        keep = (away < NONE * (bound[i] + bound[j])) & ((bound[j] < bound[i]) | ((bound[j] == bound[i]) & (i < j)))
-        found.append(np.sort(np.column_stack([i[keep], j[keep]]), axis=1))
-    members = np.unique(np.concatenate(found), axis=0)
-    apart = at[members[:, 0]] - at[members[:, 1]]
-    if sides is not None:
-        apart -= sides * np.rint(apart / sides)
-    away = np.hypot(apart[:, 0], apart[:, 1])
-    return close.Pairs(members, np.column_stack([apart, away]), np.zeros(away.size), bound)
-
-
 class Overlap(NamedTuple):
     """Pairs that overlap at a separation, with their shares."""
 
@@ -93,7 +77,7 @@ class Overlap(NamedTuple):
 class Near:
     """Asperities of which pairs may come to overlap."""
 
-    def __init__(self, kernels: JkrKernels, asperities: Asperities, natural: Floats, pairs: close.Pairs) -> None:
+    def __init__(self, kernels: CoupledKernels, asperities: Asperities, natural: Floats, pairs: close.Pairs) -> None:
         self._kernels, self._asperities, self._natural = kernels, asperities, natural
         self.pairs = pairs
         self._which, self._place = np.unique(pairs.members, return_inverse=True)
@@ -124,14 +108,6 @@ class Near:
         u = np.minimum(u[on], 1.0)
         falls = -6.0 * u * (1.0 - u) * by_reach * rate[on]
         return Overlap(close.Pairs(pairs.members[on], pairs.apart[on], u * u * (3.0 - 2.0 * u), pairs.radius), falls)
-
-
-def take_from_field(pairs: close.Pairs, load: Floats, field: Floats, order: int) -> None:
-    """Take the expansion of the pairs out of a field of point loads, as far as they share."""
-    if pairs.share.size:
-        close.take_from_field(pairs, load, field)
-        if order == 1:
-            field[1:] = 0.0
 
 
 class Bells(NamedTuple):

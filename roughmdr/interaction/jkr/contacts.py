@@ -19,8 +19,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from roughmdr.interaction.interface import Asperities
-from roughmdr.interaction.jkr.interface import kernel
+from roughmdr.interaction.interface import Asperities, kernel
 from roughmdr.numerics.arguments import Floats
 
 _STEP = 1e-4  # of the state, for the derivatives of lambda, which only a small square multiplies

@@ -9,12 +9,11 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from roughmdr.interaction import close
+from roughmdr.interaction.coupling import add_moments, field_of
 from roughmdr.interaction.dense import Dense
-from roughmdr.interaction.interface import Asperities
+from roughmdr.interaction.interface import Asperities, CoupledKernels
 from roughmdr.interaction.jkr import coincident
 from roughmdr.interaction.jkr.contacts import Contacts
-from roughmdr.interaction.jkr.interface import JkrKernels
 from roughmdr.numerics.arguments import Floats
 from roughmdr.numerics.jit import njit
 
@@ -24,7 +23,7 @@ Bools = NDArray[np.bool_]
 class PairProblem(NamedTuple):
     """Asperities that adhere and feel each other, in units of the patch."""
 
-    kernels: JkrKernels
+    kernels: CoupledKernels
     asperities: Asperities
     coupling: Dense
     """With the expansions of all pairs."""
@@ -110,21 +109,16 @@ def _compare(inside: Bools, pinned: bool, work: float, contacts: Contacts, natur
     return largest
 
 
-def field_of(problem: PairProblem, load: Floats, overlap: coincident.Overlap) -> Floats:
-    """Return the displacement by loads with its derivatives, [row, asperity], but for overlapping pairs."""
-    if problem.order == 2:
-        field = problem.coupling.field(load)
-    else:
-        field = np.zeros((4, load.size))
-        field[0] = problem.coupling.potential(load)
-    coincident.take_from_field(overlap.pairs, load, field, problem.order)
-    return field
+def no_field(problem: PairProblem) -> Floats:
+    """Return an outer field of 0."""
+    return np.zeros((5, problem.natural.size))
 
 
 def evaluate(problem: PairProblem, inside: Bools, t: Floats, load: Floats, separation: float, outer: Floats) -> State:
     """Return the contacts with their residuals."""
     overlap, coupling = problem.near.at(separation), problem.coupling
-    pairs, field = overlap.pairs, field_of(problem, load, overlap)
+    pairs, order = overlap.pairs, problem.order
+    field = field_of(coupling, pairs, order, load)
     contacts = Contacts(*np.zeros((len(Contacts._fields), t.size)))
     whole = field + outer[:4]
     problem.kernels.fill(inside, t, load, whole, problem.work, problem.asperities, contacts)
@@ -137,11 +131,10 @@ def evaluate(problem: PairProblem, inside: Bools, t: Floats, load: Floats, separ
         pull = -2.0 / 3.0 * math.pi * load[i] * load[j] * found.by_spread
         np.add.at(edge, i, pull * contacts.radius[i])
         np.add.at(edge, j, pull * contacts.radius[j])
-    potential = by_loads
-    if problem.order == 2:
+    potential = by_loads.copy()
+    if order == 2:
         moments = 0.25 * contacts.second_moment, contacts.tilting * whole[1], contacts.tilting * whole[2]
-        potential = by_loads + coupling.of_moments(*moments)
-        close.take_from_moments(pairs, *moments, potential)
+        add_moments(coupling, pairs, moments, potential)
     rows = np.array([edge, edge, problem.asperities.height - separation - potential - outer[0]])
     error = _compare(inside, problem.kernels.pinned, problem.work, contacts, problem.natural, rows)
     release, edge, gap = rows
@@ -158,11 +151,20 @@ def alone(problem: PairProblem, state: State) -> tuple[PairProblem, State]:
     return few, whole._replace(factors=state.factors)
 
 
-def among(problem: PairProblem, kept: NDArray[np.int64], few: State, outer: Floats) -> State:
-    """Return the state of all asperities of a problem, of which ``kept`` are in contact as in ``few``."""
-    inside, t, load = np.zeros(outer.shape[1], np.bool_), np.zeros(outer.shape[1]), np.zeros(outer.shape[1])
-    inside[kept], t[kept], load[kept] = True, few.t, few.load
+def among(problem: PairProblem, kept: NDArray[np.int64], few: State, outer: Floats | None = None) -> State:
+    """Return the state of all asperities of a problem, of which ``kept`` are as in ``few`` and no other in contact."""
+    outer = no_field(problem) if outer is None else outer
+    inside, (t, load) = np.zeros(outer.shape[1], np.bool_), np.zeros((2, outer.shape[1]))
+    inside[kept], t[kept], load[kept] = few.inside, few.t, few.load
     return evaluate(problem, inside, t, load, few.separation, outer)._replace(factors=few.factors)
+
+
+def interpolated(
+    problem: PairProblem, first: State, last: State, part: float, separation: float, outer: Floats
+) -> State:
+    """Return the contacts a part of the way from one state to another, to be taken for a guess."""
+    t, load = first.t + part * (last.t - first.t), first.load + part * (last.load - first.load)
+    return evaluate(problem, first.inside, t, load, separation, outer)
 
 
 def moved(problem: PairProblem, state: State, step: Step, drive: Drive) -> State:

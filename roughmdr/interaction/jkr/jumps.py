@@ -4,8 +4,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from roughmdr.interaction.coupling import field_of
 from roughmdr.interaction.jkr.branch import LEAST_STATE, NoEquilibriumError
-from roughmdr.interaction.jkr.equilibrium import Drive, PairProblem, State, energy, evaluate, field_of
+from roughmdr.interaction.jkr.equilibrium import Drive, PairProblem, State, energy, evaluate
 from roughmdr.interaction.jkr.events import Event, advance
 from roughmdr.interaction.jkr.lone import Surface
 from roughmdr.interaction.jkr.newton import at_rest
@@ -47,7 +48,7 @@ def jump(problem: PairProblem, state: State, event: Event) -> State:
     if found > 0.0:
         load[i] = kernels.lone_load(found, surface, problem.work, i, problem.asperities)
     outer = state.outer.copy()
-    outer[1:4] += field_of(problem, state.load - load, state.overlap)[1:]
+    outer[1:4] += field_of(problem.coupling, state.overlap.pairs, problem.order, state.load - load)[1:]
     new = evaluate(problem, inside, t, load, state.separation, outer)
     outer[0] += np.where(inside, new.gap, state.potential - new.potential)
     outer[4] -= 2.0 * new.release * new.edge

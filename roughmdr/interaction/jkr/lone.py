@@ -6,8 +6,7 @@ Its state is the next at which the edge is at rest. The energy is that of ``cont
 import math
 from typing import NamedTuple
 
-from roughmdr.interaction.interface import Asperities
-from roughmdr.interaction.jkr.interface import kernel
+from roughmdr.interaction.interface import Asperities, kernel
 from roughmdr.numerics.arguments import Floats
 
 _STRIDE, _LEAST_STATE, _MOST_STATE = 1.1, 1e-30, 1e30

@@ -13,7 +13,6 @@ from roughmdr.interaction.jkr.branch import NoEquilibriumError
 from roughmdr.interaction.jkr.equilibrium import State, energy
 from roughmdr.interaction.jkr.front import Front, Piece
 from roughmdr.interaction.jkr.section import Climb, Met, Section
-from roughmdr.interaction.placed_asperities import Placed
 from roughmdr.interaction.settings import Interaction
 from roughmdr.loading.machine import DEAD_LOAD, Leg, Machine, MachinePath, legs_of
 from roughmdr.numerics.underway import each_step
@@ -60,7 +59,7 @@ class Hanging:
             return math.inf
         if not self._machine.is_dead_load and not self._state.inside.any():
             return demand
-        return self._state.separation * self._front.placed.length
+        return self._state.separation * self._front.length
 
     def _go(self, climb: Climb, level: float) -> None:
         """Go to where the demand is first ``level``."""
@@ -139,7 +138,7 @@ class Hanging:
 
     def _way(self, climb: Climb, state: State, level: float) -> float:
         """Return how far to go next."""
-        depth = self._front.depth
+        depth = self._front.deepest
         longest = _LONGEST * max(depth, self._front.top - state.separation)
         if not (self._slope > 0.0 and state.inside.any()):
             return longest
@@ -187,24 +186,18 @@ def solve_on_machine(
     A flat that a dead load pulls off is followed up to ``clear`` [m], or to where its last contact parts. Otherwise as
     ``path.solve_path``.
     """
-    placed = Placed(ensemble, effective_modulus, interaction)
-    machine, unit = _in_patch(path.machine, effective_modulus, placed.length)
-    legs, front = legs_of(path.demand), Front(placed, effective_modulus, work)
-    rises = any(leg.rises for leg in legs)
-    account = Account(front, effective_modulus, ensemble.height.size, names, rises=rises, reach=reach)
+    legs, front = legs_of(path.demand), Front(ensemble, effective_modulus, work, interaction)
+    account = Account(front, names, rises=any(leg.rises for leg in legs), reach=reach)
+    machine, unit = path.machine, front.length
+    if machine.is_dead_load:
+        machine, unit = DEAD_LOAD, front.force_unit
+    else:
+        machine = Machine(1.0, machine.compliance * front.force_unit / front.length)
     lossy = not {"dissipated_energy", "machine_dissipated_energy"}.isdisjoint(names)
-    flat = Hanging(front, account, machine, unit, clear / placed.length, lossy=lossy)
+    flat = Hanging(front, account, machine, unit, clear / front.length, lossy=lossy)
     try:
         for leg in legs:
             flat.follow(leg)
     except NoEquilibriumError:
         account.lose_rest(path.demand.size)
     return account.result()
-
-
-def _in_patch(machine: Machine, modulus: float, length: float) -> tuple[Machine, float]:
-    """Return a machine in units of the patch, and the unit of its demand in SI."""
-    force = math.pi * modulus * length * length
-    if machine.is_dead_load:
-        return DEAD_LOAD, force
-    return Machine(1.0, machine.compliance * force / length), length

@@ -9,8 +9,7 @@ import numpy as np
 
 from roughmdr.interaction.jkr.equilibrium import Drive, PairProblem, State, Step, alone, among, moved
 from roughmdr.interaction.jkr.factors import Factors, Lead
-from roughmdr.interaction.jkr.mixing import Mixing
-from roughmdr.interaction.jkr.tangent import leading
+from roughmdr.interaction.jkr.tangent import Mixing, leading
 
 _SLOW = 0.12  # of the error that a step leaves, from where the tangent is factored again
 _PATIENCE = 8  # steps with factors of their own, in which the residual has to halve

@@ -6,7 +6,6 @@ from roughmdr.ensemble.ensemble import Ensemble
 from roughmdr.interaction.jkr.account import Account, Adhering
 from roughmdr.interaction.jkr.branch import NoEquilibriumError
 from roughmdr.interaction.jkr.front import Front
-from roughmdr.interaction.placed_asperities import Placed
 from roughmdr.interaction.settings import Interaction
 from roughmdr.numerics.arguments import Floats
 from roughmdr.numerics.underway import each_step
@@ -30,16 +29,12 @@ def solve_path(
     Stiffness, energy and crowding are computed where ``names`` asks for them; each contact is told where the flat is
     closest, or at step number ``at``; ``reach`` as ``Account``. Errors as ``interaction.solve``.
     """
-    placed = Placed(ensemble, effective_modulus, interaction)
-    front = Front(placed, effective_modulus, work)
-    rises = np.diff(separation, prepend=np.inf) > 0.0
-    account = Account(
-        front, effective_modulus, ensemble.height.size, names, rises=bool(rises.any()), at=at, reach=reach
-    )
-    state = front.parted(max(float(separation[0]) / placed.length, front.top + _ABOVE))
+    front, rises = Front(ensemble, effective_modulus, work, interaction), np.diff(separation, prepend=np.inf) > 0.0
+    account = Account(front, names, rises=bool(rises.any()), at=at, reach=reach)
+    state = front.parted(max(float(separation[0]) / front.length, front.top + _ABOVE))
     try:
         for h, up in each_step(list(zip(separation.tolist(), rises.tolist(), strict=True))):
-            state, pieces = front.go(state, h / placed.length)
+            state, pieces = front.go(state, h / front.length)
             for piece in pieces:
                 account.pass_over(piece)
             account.stand(state, h, rises=up)

@@ -12,7 +12,7 @@ import numpy as np
 
 from roughmdr.interaction.jkr.bracket import Bracket
 from roughmdr.interaction.jkr.branch import LEAST_STATE, NoEquilibriumError, is_near
-from roughmdr.interaction.jkr.equilibrium import Drive, State, alone, among, evaluate
+from roughmdr.interaction.jkr.equilibrium import Drive, State, alone, among, interpolated
 from roughmdr.interaction.jkr.events import advance
 from roughmdr.interaction.jkr.factors import Factors
 from roughmdr.interaction.jkr.front import Piece
@@ -148,11 +148,10 @@ class Section:
         low, high = max(u for u in self._known if u < place), min(u for u in self._known if u > place)
         first, last = self._known[low], self._known[high]
         part = (place - low) / (high - low)
-        t, load = first.t + part * (last.t - first.t), first.load + part * (last.load - first.load)
         begin, end = self._piece.begin.separation, self._piece.end.separation
         left = (1.0 - place) ** 2 if self._fold else 1.0 - place
         h = begin + (1.0 - left) * (end - begin)
-        guess = evaluate(self._few, first.inside, t, load, h, first.outer)
+        guess = interpolated(self._few, first, last, part, h, first.outer)
         found, _ = newton(self._few, guess, Drive(0.0, np.zeros_like(first.outer)), self._factors)
         if not is_near(guess, found):
             found = self._followed(first, h)

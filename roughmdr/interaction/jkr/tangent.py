@@ -8,13 +8,36 @@ import math
 import numpy as np
 
 from roughmdr.interaction import close
-from roughmdr.interaction.jkr import coincident
-from roughmdr.interaction.jkr.equilibrium import Drive, PairProblem, State, Step, field_of
+from roughmdr.interaction.coupling import add_moments, field_of
+from roughmdr.interaction.jkr.equilibrium import Drive, PairProblem, State, Step
 from roughmdr.interaction.jkr.factors import Factors, Lead
-from roughmdr.interaction.jkr.mixing import Mixing
 from roughmdr.numerics.arguments import Floats
 
 _MAX_STEPS = 50
+_REMEMBERED = 8  # steps of an iteration, by which the next is improved
+_RCOND = 1e-12
+
+
+class Mixing:
+    """Steps of an iteration, improved by those before (D. G. Anderson, J. ACM 12 (1965) 547)."""
+
+    def __init__(self) -> None:
+        self._steps = list[Floats]()
+        self._ways = list[Floats]()
+
+    def improved(self, step: Floats) -> Floats:
+        """Return the way to where the steps so far, with this one, say that there is none; one without end as it is."""
+        self._steps = [*self._steps[-_REMEMBERED:], step]
+        if not self._ways or not np.isfinite(self._steps).all():
+            return step
+        ways = np.array(self._ways[-_REMEMBERED:]).T
+        changes = np.diff(np.array(self._steps), axis=0).T
+        part = np.linalg.lstsq(changes, step, rcond=_RCOND)[0]
+        return np.asarray(step - (ways + changes) @ part)
+
+    def go(self, way: Floats) -> None:
+        """Have the iteration go a way from its last point."""
+        self._ways.append(way)
 
 
 class Tangent:
@@ -36,10 +59,13 @@ class Tangent:
         edge = c.edge_by_radius * step.radius + c.edge_by_load * load + outer[4]
         gap = c.edge_by_load / math.pi * step.radius - 0.5 * math.pi / a * load
         gap -= self.drive.separation * step.along + outer[0]
-        pairs, field = state.overlap.pairs, field_of(problem, load, state.overlap)
-        closer, sharing = -self.drive.separation * step.along, pairs._replace(share=state.overlap.rate)
-        if closer != 0.0:
-            coincident.take_from_field(sharing, closer * state.load, field, problem.order)
+        pairs, closer = state.overlap.pairs, -self.drive.separation * step.along
+        field, sharing = (
+            field_of(problem.coupling, pairs, problem.order, load),
+            pairs._replace(share=state.overlap.rate),
+        )
+        if closer != 0.0 and pairs.share.size:
+            close.take_from_field(sharing, closer * state.load, problem.order, field)
         gap -= field[0]
         if problem.order == 2:
             field = field + outer[:4]
@@ -50,9 +76,9 @@ class Tangent:
             moment = c.moment_by_radius * step.radius + 2.0 / 3.0 * a * a * load - 32.0 / (45.0 * math.pi) * a**5 * bent
             turn = c.edge_by_tilt / math.pi * step.radius + c.lift * load
             moments = 0.25 * moment, c.tilting * tilt[0] + turn * whole[1], c.tilting * tilt[1] + turn * whole[2]
-            potential = problem.coupling.of_moments(*moments)
-            close.take_from_moments(pairs, *moments, potential)
-            if closer != 0.0:
+            potential = np.zeros_like(gap)
+            add_moments(problem.coupling, pairs, moments, potential)
+            if closer != 0.0 and pairs.share.size:
                 standing = 0.25 * closer * c.second_moment, closer * c.tilting * whole[1], closer * c.tilting * whole[2]
                 close.take_from_moments(sharing, *standing, potential)
             gap -= potential + 2.0 / 3.0 * a * a * bent - c.lift * along

@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 from roughmdr.interaction.jkr.bracket import Bracket
-from roughmdr.interaction.jkr.equilibrium import Drive, PairProblem, State, alone, evaluate
+from roughmdr.interaction.jkr.equilibrium import Drive, PairProblem, State, alone, interpolated
 from roughmdr.interaction.jkr.factors import Factors
 from roughmdr.interaction.jkr.newton import newton
 from roughmdr.interaction.jkr.tangent import Tangent
@@ -66,8 +66,7 @@ def largest_between(problem: PairProblem, state: State, new: State, best: Tensio
         if not state.separation < h < new.separation:
             break
         part = (h - state.separation) / (new.separation - state.separation)
-        t, load = state.t + part * (new.t - state.t), state.load + part * (new.load - state.load)
-        middle, _ = newton(few, evaluate(few, state.inside, t, load, h, state.outer), still, factors)
+        middle, _ = newton(few, interpolated(few, state, new, part, h, state.outer), still, factors)
         if not math.isfinite(middle.error):
             return best
         best = min(best, of_state(middle))
