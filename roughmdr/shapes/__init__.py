@@ -4,7 +4,7 @@ from roughmdr.shapes.array_shapes import SharedProfile, TabledShape
 from roughmdr.shapes.base import ProfileShape, Shape
 from roughmdr.shapes.blunt_tips import CappedParaboloid, RoundedCone
 from roughmdr.shapes.flat_tips import FlatPunch, RoundedPunch, TruncatedCone, TruncatedParaboloid
-from roughmdr.shapes.mdr_table.shape import MdrTable
+from roughmdr.shapes.mdr_table import MdrTable
 from roughmdr.shapes.power import Cone, Paraboloid, PowerLaw
 from roughmdr.shapes.series import PowerSeries
 from roughmdr.shapes.sphere import Sphere

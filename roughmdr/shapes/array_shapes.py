@@ -71,7 +71,23 @@ class TabledShape(ArrayShape):
     dimension: ClassVar[str]  # the one of its arrays in the Dataset of an ensemble, beside ``asperity``
 
 
-def lengths_in_a_row(owner: str, name: str, values: ArrayLike, fewest: int) -> Floats:
+def power_of_two(values: ArrayLike) -> Any:
+    """Return the powers of two next to positive numbers: a unit, since dividing by it changes no bit."""
+    return 2.0 ** np.frexp(values)[1]
+
+
+def equal_rows(owner: str, fewest: int, **columns: ArrayLike) -> list[Floats]:
+    """Return columns in metres as read-only floats; ShapeError unless finite, and equally many in rows of so many."""
+    rows = [_lengths_in_a_row(owner, name, values, fewest) for name, values in columns.items()]
+    if rows[0].size != rows[1].size:
+        first, second = columns
+        raise ShapeError(
+            f"{owner}: {first} holds {rows[0].size} numbers and {second} {rows[1].size}; they must be equally many"
+        )
+    return rows
+
+
+def _lengths_in_a_row(owner: str, name: str, values: ArrayLike, fewest: int) -> Floats:
     """Return ``values`` in metres as read-only floats; ShapeError unless finite and a row of so many at least."""
     try:
         row = floats_in_si(name, values, "m", "a list of numbers")

@@ -1,8 +1,9 @@
-"""The params of a tabulated profile from its spline: the pieces of its MDR profile, as ``lookup`` describes them.
+"""The params of a tabulated profile from its spline: the pieces of its MDR profile, as ``lookup`` describes their rows.
 
 It needs the compiler, and so is imported when a table is first made.
 """
 
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -10,8 +11,9 @@ import numpy as np
 from roughmdr.numerics.arguments import Floats
 from roughmdr.numerics.gauss import unit_gauss
 from roughmdr.numerics.jit import compiled
+from roughmdr.shapes.pieces import ROWS
 from roughmdr.shapes.tabulated.abel import integrals
-from roughmdr.shapes.tabulated.lookup import DEGREE, HEAD, PIECE, beginnings, elastic_integral_between
+from roughmdr.shapes.tabulated.lookup import DEGREE, ELASTIC, HEIGHT, KNOT, PIECE, SCALE, elastic_integral_between
 
 _RTOL = 3e-15  # of the largest value on a piece: what the last coefficients may leave
 _NOISE = 1e-11  # an error below this that halving the piece does not lower is rounding
@@ -44,21 +46,25 @@ def tabulate(knots: Floats, coefficients: Floats) -> Floats:
     begins = np.append(knots[:-1], knots[-1] * 2.0 ** np.arange(_OCTAVES_BEYOND))
     lengths = np.sqrt((ends - bases) * (ends + bases))
     starts = np.sqrt((begins - bases) * (begins + bases)) / lengths
-    pieces = [_tip(coefficients), *_fit([*map(_Interval, bases, lengths, starts)][1:], knots, coefficients)]
-    pieces.sort(key=lambda piece: piece[0])
-    begins = np.array([begin for begin, _ in pieces] + [ends[-1]])
+    found = [(0.0, 0.0, _tip(coefficients)), *_fit([*map(_Interval, bases, lengths, starts)][1:], knots, coefficients)]
+    found.sort(key=lambda piece: piece[0])
+    begins = np.array([begin for begin, *_ in found] + [ends[-1]])
+    rows = np.zeros((begins.size, PIECE))
+    rows[:, 0] = begins
+    rows[:, KNOT] = [base for _, base, _ in found] + [knots[-1]]
+    spline = np.column_stack([_heights(knots, coefficients), coefficients])
+    rows[:, HEIGHT:SCALE] = spline[np.searchsorted(knots, rows[:, KNOT])]
+    for number, (_, _, numbers) in enumerate([*found, (0.0, 0.0, _far(begins[-1], knots, coefficients))]):
+        rows[number, SCALE : SCALE + numbers.size] = numbers
     intervals = _softening_intervals(begins, knots, coefficients)
-    far = _far(begins[-1], knots, coefficients)
-    spline = np.column_stack([knots, _heights(knots, coefficients), coefficients])
-    head = [[len(intervals)], np.ravel(intervals), [len(pieces)], begins]
-    params = np.concatenate([*head, *(piece for _, piece in pieces), far, [knots.size], spline.ravel()])
+    params = np.concatenate([[len(rows), PIECE], rows.ravel(), [len(intervals)], np.ravel(intervals)])
     _add_elastic_integrals(params)
     return params
 
 
-def _fit(intervals: list[_Interval], knots: Floats, coefficients: Floats) -> list[tuple[float, Floats]]:
-    """Return where each piece begins, and its numbers; intervals are halved until polynomials fit."""
-    pieces: list[tuple[float, Floats]] = []
+def _fit(intervals: list[_Interval], knots: Floats, coefficients: Floats) -> list[tuple[float, float, Floats]]:
+    """Return where each piece begins, its knot and its numbers from the scale on; halved until polynomials fit."""
+    pieces: list[tuple[float, float, Floats]] = []
     while intervals:
         base, length, start, stop, before = np.array(intervals).T
         middle, half = 0.5 * (stop + start), 0.5 * (stop - start)
@@ -72,8 +78,8 @@ def _fit(intervals: list[_Interval], knots: Floats, coefficients: Floats) -> lis
         for i in np.flatnonzero(fits):
             begin = np.hypot(base[i], length[i] * start[i]) if start[i] > 0.0 else base[i]
             sizes = np.abs(powers[i, [0, 2]]).sum(axis=1)
-            head = [base[i], 1.0 / (length[i] * half[i]), middle[i] / half[i], 0.0, *sizes]
-            pieces.append((float(begin), np.concatenate([head, powers[i].ravel()])))
+            head = [1.0 / (length[i] * half[i]), middle[i] / half[i], 0.0, *sizes]
+            pieces.append((float(begin), float(base[i]), np.concatenate([head, powers[i].ravel()])))
         intervals = [
             _Interval(base[i], length[i], *limits, error[i])
             for i in np.flatnonzero(~fits)
@@ -90,25 +96,23 @@ def _heights(knots: Floats, coefficients: Floats) -> Floats:
 
 
 def _add_elastic_integrals(params: Floats) -> None:
-    """Fill in the elastic integral at the beginning of each piece and of the far field."""
-    integral_between = compiled(elastic_integral_between)
-    offset, count = beginnings(params)
-    first_piece, total = offset + count + 1, 0.0
-    for i in range(count):
-        params[first_piece + PIECE * i + 3] = total
+    """Fill in the elastic integral at the beginning of each piece."""
+    integral_between, total = compiled(elastic_integral_between), 0.0
+    rows = params[ROWS : ROWS + PIECE * int(params[0])].reshape(-1, PIECE)
+    for before, after in pairwise(rows):
         # Just inside, where the piece itself is looked up.
-        total += integral_between(params[offset + i], np.nextafter(params[offset + i + 1], 0.0), params)
-    params[first_piece + PIECE * count + 2] = total
+        total += integral_between(before[0], np.nextafter(after[0], 0.0), params)
+        after[ELASTIC] = total
 
 
-def _tip(coefficients: Floats) -> tuple[float, Floats]:
+def _tip(coefficients: Floats) -> Floats:
     """Return the first piece, in powers of a itself, so that it is right however near the tip."""
     c0, c1, c2 = coefficients[0] * np.array([0.5 * np.pi, 1.0, 0.25 * np.pi])
     g, slope, load = (np.zeros(DEGREE + 1) for _ in range(3))
     g[1:4] = c0, c1, c2
     slope[:3] = c0, 2.0 * c1, 3.0 * c2
     load[2:5] = 0.5 * c0, 2.0 / 3.0 * c1, 0.75 * c2
-    return 0.0, np.concatenate([[0.0, 1.0, *np.zeros(HEAD - 2)], g, slope, load])
+    return np.concatenate([[1.0, 0.0, 0.0, 0.0, 0.0], g, slope, load])
 
 
 def _far(end: float, knots: Floats, coefficients: Floats) -> Floats:
@@ -126,7 +130,7 @@ def _far(end: float, knots: Floats, coefficients: Floats) -> Floats:
     steepness = 0.5 * np.pi * coefficients[-1, 0]
     far = end * np.sum(2.0 * k / (2.0 * k - 1.0) * terms * end ** (-2.0 * k))
     constant = integrals(np.array([end]), np.zeros(1), knots, coefficients)[0, 2] - 0.5 * steepness * end**2 - far
-    return np.concatenate([[steepness, constant, 0.0], terms])
+    return np.concatenate([[steepness, constant, 0.0, 0.0, 0.0], terms])
 
 
 def sample_slope(begins: Floats, knots: Floats, coefficients: Floats) -> tuple[Floats, Floats]:

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from roughmdr.errors import OutOfRange, ShapeError
 from roughmdr.numerics.arguments import Floats
-from roughmdr.shapes.array_shapes import SharedProfile, lengths_in_a_row
+from roughmdr.shapes.array_shapes import SharedProfile, equal_rows, power_of_two
 from roughmdr.shapes.base import check_radii
 from roughmdr.shapes.tabulated import lookup
 
@@ -36,8 +36,7 @@ class Tabulated(SharedProfile):
     profile = lookup.PROFILE
 
     def __init__(self, r: ArrayLike, f: ArrayLike) -> None:
-        self.radii = lengths_in_a_row(self.name, "r", r, _MIN_POINTS)
-        self.heights = lengths_in_a_row(self.name, "f", f, _MIN_POINTS)
+        self.radii, self.heights = equal_rows(self.name, _MIN_POINTS, r=r, f=f)
         _check(self.radii, self.heights)
         self.knot_slopes = _monotone_slopes(self.radii, self.heights)
         self._check_disc()
@@ -59,8 +58,8 @@ class Tabulated(SharedProfile):
 
     @cached_property
     def _units(self) -> tuple[float, float]:
-        """The width and rise: the powers of two next to the last r and f, so that dividing by them changes no bit."""
-        return float(2.0 ** np.frexp(self.radii[-1])[1]), float(2.0 ** np.frexp(self.heights[-1])[1])
+        """The width and rise: powers of two next to the last r and f."""
+        return float(power_of_two(self.radii[-1])), float(power_of_two(self.heights[-1]))
 
     def _exact_pieces(self) -> list[tuple[Fraction, ...]]:
         """Return the knot and the coefficients of f' in r - knot of each piece, the last without end; in ``_units``.
@@ -157,8 +156,6 @@ def _check(r: Floats, f: Floats) -> None:
     for name, column in (("r", r), ("f", f)):
         if column[0] != 0.0:
             raise ShapeError(f"tabulated: {name}[0] is {column[0]:g} m; the table must begin at the tip, with 0")
-    if r.size != f.size:
-        raise ShapeError(f"tabulated: r holds {r.size} numbers and f {f.size}; they must be equally many")
     for name, column, falls, must in (
         ("r", r, np.diff(r) <= 0.0, "rise from point to point"),
         ("f", f, np.diff(f) < 0.0, "not fall: the tip is the lowest point"),
@@ -184,7 +181,7 @@ def _monotone_slopes(r: Floats, f: Floats) -> Floats:
     """Return f' at the points, of the not-a-knot cubic, limited so that f rises, and is convex where the chords are."""
     from scipy.interpolate import CubicSpline
 
-    r_unit, f_unit = (2.0 ** np.frexp(column[-1])[1] for column in (r, f))  # powers of two, so that no bit changes
+    r_unit, f_unit = power_of_two(r[-1]), power_of_two(f[-1])
     r, f = r / r_unit, f / f_unit
     chords = np.diff(f) / np.diff(r)
     before, after = np.append(-np.inf, chords[:-1]), np.append(chords[1:], np.inf)

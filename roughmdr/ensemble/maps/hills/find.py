@@ -17,7 +17,7 @@ from roughmdr.ensemble.maps.waves import mean_square_laplacian, slope_ratio
 from roughmdr.errors import SceneError
 from roughmdr.numerics.arguments import Floats
 from roughmdr.numerics.jit import njit
-from roughmdr.shapes.mdr_table.shape import rising
+from roughmdr.shapes.mdr_table import rising
 
 _WAVELENGTH = 6.6
 """Wavelength over the ratio of r.m.s. slope to r.m.s. Laplacian: 2 pi where all waves are equally long, and 5 % more

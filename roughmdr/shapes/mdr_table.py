@@ -8,8 +8,8 @@ from numpy.typing import ArrayLike
 
 from roughmdr.errors import ShapeError
 from roughmdr.numerics.arguments import Floats
-from roughmdr.shapes.array_shapes import TabledShape, lengths_in_a_row
-from roughmdr.shapes.mdr_table import lookup, rows
+from roughmdr.shapes import mdr_pieces
+from roughmdr.shapes.array_shapes import TabledShape, equal_rows, power_of_two
 
 _MIN_STEP = 1e-6  # of the last radius, and of the last g: nearer points leave no digits to the slope between them
 _MAX_LENGTH = 1e100  # [m], so that the squares of radii are floats
@@ -32,15 +32,10 @@ class MdrTable(TabledShape):
     name = "mdr_table"
     units: ClassVar[dict[str, str]] = {"a": "m", "g": "m"}
     dimension = "point"
-    profile = lookup.PROFILE
+    profile = mdr_pieces.PROFILE
 
     def __init__(self, a: ArrayLike, g: ArrayLike) -> None:
-        self.radii, self.indentations = lengths_in_a_row(self.name, "a", a, 1), lengths_in_a_row(self.name, "g", g, 1)
-        if self.radii.size != self.indentations.size:
-            raise ShapeError(
-                f"mdr_table: a holds {self.radii.size} numbers and g {self.indentations.size}; "
-                "they must be equally many"
-            )
+        self.radii, self.indentations = equal_rows(self.name, 1, a=a, g=g)
         self.check(self.parameters)
 
     def __repr__(self) -> str:
@@ -72,10 +67,10 @@ class MdrTable(TabledShape):
 
     @classmethod
     def nondimensionalise(cls, parameters: dict[str, Floats]) -> tuple[Floats, Floats, Floats]:
-        """Return powers of two next to the last a and g as width and rise, so that dividing by them changes no bit."""
+        """Return powers of two next to the last a and g as width and rise."""
         a, g = (np.atleast_2d(parameters[name]) for name in ("a", "g"))
-        width, rise = (2.0 ** np.frexp(column[:, -1])[1] for column in (a, g))
-        return width, rise, rows.rows_of(a / width[:, None], g / rise[:, None])
+        width, rise = power_of_two(a[:, -1]), power_of_two(g[:, -1])
+        return width, rise, mdr_pieces.rows_of(a / width[:, None], g / rise[:, None])
 
     @cached_property
     def _nondimensional(self) -> tuple[float, float, Floats]:
@@ -91,11 +86,9 @@ class MdrTable(TabledShape):
 
         with mp.workdps(40):
             width, rise, _ = self.nondimensional()
-            slopes = rows.knot_slopes(*(column[None] for column in (self.radii / width, self.indentations / rise)))[0]
-            points = [
-                (mp.mpf(0), mp.mpf(0)),
-                *zip(map(mp.mpf, self.radii / width), map(mp.mpf, self.indentations / rise), strict=True),
-            ]
+            radii, depths = self.radii / width, self.indentations / rise
+            slopes = mdr_pieces.knot_slopes(radii[None], depths[None])[0]
+            points = [(mp.mpf(0), mp.mpf(0)), *zip(map(mp.mpf, radii), map(mp.mpf, depths), strict=True)]
             a, g, load = mp.mpf(t), mp.mpf(0), mp.mpf(0)
             for k, (begin, value) in enumerate(points):
                 if begin > a:
