@@ -15,6 +15,7 @@ from roughmdr.errors import OutOfRange, RoughmdrError
 from roughmdr.numerics.arguments import Floats
 from roughmdr.schema.arguments import check_number, exactly_one
 from roughmdr.schema.keywords import named_keywords
+from roughmdr.schema.quantities import Quantity
 
 __all__ = ["Moments", "SelfAffine", "Spectrum"]
 
@@ -23,6 +24,7 @@ def __dir__() -> list[str]:
     return sorted(__all__)
 
 
+HURST = Quantity("1", at_least=0.0, at_most=1.0)
 MIN_ALPHA = 1.5
 """Nayak's parameter alpha of waves of one length in all directions; every other isotropic surface has a larger one."""
 
@@ -150,9 +152,7 @@ class SelfAffine(NamedTuple):
         >>> f"{surface.rms_height:.3g} m, alpha {surface.moments.alpha:.3g}"
         '5.21e-07 m, alpha 15.3'
         """
-        hurst = check_number("hurst", hurst, "1", zero=True)
-        if hurst > 1.0:
-            raise OutOfRange(f"hurst is {hurst:g}; it must be from 0 to 1")
+        hurst = HURST.argument("hurst", hurst)
         long_wave, short_wave = check_wavelengths(long_wave, short_wave)
         one = cls(hurst, long_wave, short_wave, 1.0)
         name, value = exactly_one("a self-affine spectrum", rms_height=rms_height, rms_slope=rms_slope)

@@ -7,9 +7,9 @@ from numpy.typing import ArrayLike
 
 from roughmdr.errors import OutOfRange, RoughmdrError, SceneError
 from roughmdr.kernels.adhesion import AdhesiveMaterial
-from roughmdr.loading.machine import MachinePath, Preload, travel
+from roughmdr.loading.machine import PRELOAD, STEPS, STIFFNESS, MachinePath, Preload, travel
 from roughmdr.loading.path import LoadingPath
-from roughmdr.schema.arguments import check_number, check_steps, check_values, exactly_one
+from roughmdr.schema.arguments import check_values, exactly_one
 from roughmdr.variables import CONTROLS, DEFAULT_STEPS, PRELOADS
 
 
@@ -48,12 +48,12 @@ def path_of(
         raise RoughmdrError("machine_stiffness goes with remote or a preload only")
     if control not in PRELOADS and steps is not None:
         raise RoughmdrError(f"steps goes with a preload only; {control} holds its own")
-    spring = None if stiffness is None else check_number("machine_stiffness", stiffness, "N/m")
+    spring = None if stiffness is None else STIFFNESS.argument("machine_stiffness", stiffness)
     per_area = control in ("pressure", "preload_pressure", "preload_contact_fraction")
     if per_area and area is None:
         raise SceneError(f"ensemble: attribute nominal_area is missing; {control} needs it")
     if control in PRELOADS:
-        values = travel(DEFAULT_STEPS if steps is None else check_steps(steps))
+        values = travel(DEFAULT_STEPS if steps is None else STEPS.argument("steps", steps))
     else:
         values = np.atleast_1d(check_values(control, raw, CONTROLS[control]))
     if values.size == 0:
@@ -62,7 +62,6 @@ def path_of(
         return LoadingPath.along(values, unload=unload, adhesive=adhesive)
     values = np.concatenate([values, values[::-1]]) if unload else values
     if control in PRELOADS:
-        quantity, unit = PRELOADS[control]
-        preload = Preload(quantity, check_number(control, raw, unit))
+        preload = Preload(PRELOADS[control][0], PRELOAD[control].argument(control, raw))
         return MachinePath.to_preload(values, preload, machine_stiffness=spring, adhesive=adhesive)
     return MachinePath.along(control, values, machine_stiffness=spring or 0.0, area=area or 1.0, adhesive=adhesive)

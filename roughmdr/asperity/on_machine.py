@@ -16,9 +16,8 @@ from roughmdr.asperity.approach import Branch, approached, branches_of
 from roughmdr.asperity.contact import Contact, Results
 from roughmdr.asperity.stable_parts import stable_parts
 from roughmdr.errors import OutOfRange, RoughmdrError
-from roughmdr.loading.machine import DEAD_LOAD, Machine, spring
+from roughmdr.loading.machine import DEAD_LOAD, STIFFNESS, Machine, spring
 from roughmdr.numerics.arguments import Floats
-from roughmdr.schema.arguments import check_number
 
 _FARTHEST = 1e150  # largest ratio of the stiffnesses of machine and contact; its square is a float
 _LARGEST = 1e140  # largest state; its square is a float
@@ -143,7 +142,7 @@ def check_machine_stiffness(given: float | str | None, *, wanted: bool) -> float
     """Return k_m [N/m], 0 for none; RoughmdrError unless it is given where it is ``wanted``, with remote, alone."""
     if (given is not None) != wanted:
         raise RoughmdrError(f"machine_stiffness {'is missing; remote needs it' if wanted else 'goes with remote only'}")
-    return check_number("machine_stiffness", given, "N/m") if given is not None else 0.0
+    return STIFFNESS.argument("machine_stiffness", given) if given is not None else 0.0
 
 
 def _bracket(excess: Callable[[Floats, Floats], Floats], low: Floats, values: Floats, end: float) -> Floats:

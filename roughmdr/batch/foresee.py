@@ -70,11 +70,11 @@ def foresee_cells(plan: Plan) -> Prospect:
         math.inf
         if cell.scene.unlike
         or plan.control == LATERAL.name
-        or reason_against_adhesion(Interaction(), cell.scene.adhesion_model)
+        or reason_against_adhesion(Interaction(model="pairwise"), cell.scene.adhesion_model)
         else paired_seconds(cell)
         for cell in plan.cells
     )
-    return Prospect(tuple(foreseen), tuple(failures), coupled, plan.scene.interaction_model)
+    return Prospect(tuple(foreseen), tuple(failures), coupled, plan.scene.interaction)
 
 
 def _some_cells(plan: Plan, most: int) -> list[int]:
@@ -117,7 +117,7 @@ def _foreseen(scene: Scene, path: LoadingPath) -> Foreseen:
     """Return the law of a part of the asperities on a part of the patch; coupled in pairs, never on a grid."""
     source, paired = scene.asperities, scene.needs_positions
     count = _MAX_PAIRED if paired else _MAX_ASPERITIES
-    if scene.interaction_model is not None and scene.interaction_model.boundary == "free" and not paired:
+    if scene.interaction is not None and scene.interaction.boundary == "free" and not paired:
         count = math.ceil(source.expected_count)  # a larger patch sinks deeper under a pressure
     stratified = not source.reason_against("stratified")
     ensemble = source.limited_to(count).ensemble(scene.seed, 0, stratified=stratified, with_positions=paired)

@@ -42,7 +42,7 @@ def target_stop(scene: Scene, target: Target, start: float) -> float:
         raise _fault(target, "needs a nominal area, which these asperities do not have")
     middle = scene.asperities.extremes(0.5)
     distances = (start - float(np.median(middle.height)), _FIRST * float(middle.columns.width.max()))
-    scene, pairwise = scene.without_grid, scene.interaction_model if scene.needs_positions else None
+    scene, pairwise = scene.without_grid, scene.interaction if scene.needs_positions else None
     rtol = _RTOL if pairwise is None else pairwise.error
     try:
         law = _law(scene, [target.variable], start)

@@ -208,13 +208,13 @@ def _moved_sideways(cell: Scene, held: Floats) -> Cell:
 
 def _check_asperities_read(cell: Scene) -> None:
     """SceneError where asperities that are read, not drawn, lack what their interaction or a stage needs."""
-    if cell.asperities.is_random or not (cell.placed or cell.interaction_model):
+    if cell.asperities.is_random or not (cell.placed or cell.interaction):
         return
     ensemble = cell.asperities.ensemble(cell.seed, 0)
     for stage in cell.stages:
         stage.check_read(cell, ensemble)
-    if cell.interaction_model is not None:
-        check_placed(ensemble, cell.interaction_model)
+    if cell.interaction is not None:
+        check_placed(ensemble, cell.interaction)
 
 
 def _left_out(scene: Scene) -> Iterator[str]:

@@ -21,7 +21,7 @@ def simulate_ensemble(
 
     ``realization`` is the number of a whole realisation, and None of a part of one, beside which nothing is computed.
     """
-    problem = Problem(ensemble, scene.effective_modulus, scene.adhesion_model, scene.interaction_model)
+    problem = Problem(ensemble, scene.effective_modulus, scene.adhesion_model, scene.interaction)
 
     def law(path: Path, names: list[str]) -> LoadSeparation:
         assert not isinstance(path, LateralPath)  # which a stage resolves
@@ -55,7 +55,7 @@ def _expected(scene: Scene, path: Path, variables: list[str]) -> LoadSeparation:
     given: dict[str, Any] = {
         "effective_modulus": scene.effective_modulus,
         "adhesion": scene.adhesion_model,
-        "interaction": scene.interaction_model,
+        "interaction": scene.interaction,
     }
 
     def law(path: Path, names: list[str]) -> LoadSeparation:

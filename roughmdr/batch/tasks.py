@@ -97,7 +97,7 @@ def prepare_all(plan: Plan, ranges: Iterable[RunRange]) -> None:
             continue
         prepared.add(kind)
         if draws:
-            prepare(shape, adhesion, scene.interaction_model, variables, unload=plan.unloads)
+            prepare(shape, adhesion, scene.interaction, variables, unload=plan.unloads)
             continue
         from roughmdr import expected
 

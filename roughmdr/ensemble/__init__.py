@@ -9,7 +9,7 @@ import operator
 from dataclasses import replace
 from typing import TYPE_CHECKING, Annotated, Any, SupportsIndex
 
-from pydantic import Field, TypeAdapter, ValidationError
+from pydantic import Field
 
 from roughmdr.ensemble.ensemble import Ensemble
 from roughmdr.ensemble.from_file import FileAsperities
@@ -20,7 +20,7 @@ from roughmdr.ensemble.random.sections_of_shapes import AnyRandomAsperities
 from roughmdr.ensemble.source import Source
 from roughmdr.ensemble.spectral.section import SpectrumAsperities
 from roughmdr.errors import SceneError, warn_limits
-from roughmdr.schema.faults import find_faults
+from roughmdr.schema.faults import validated
 from roughmdr.schema.keywords import named_keywords
 
 if TYPE_CHECKING:
@@ -136,9 +136,5 @@ def _whole_number(name: str, value: object) -> int:
 def _validated(table: dict[str, Any]) -> Source:
     if not isinstance(table, dict):
         raise SceneError(f"asperities is {table!r}; it must be a table, or the section of a scene")
-    try:
-        return TypeAdapter[Source](Asperities).validate_python(table)
-    except ValidationError as error:
-        faults = find_faults(error, table, Asperities)
-        keyed = [fault._replace(key=f"asperities.{fault.key}".removesuffix(".")) for fault in faults]
-        raise SceneError.of(keyed) from None
+    section: Source = validated(Asperities, table, "asperities")
+    return section

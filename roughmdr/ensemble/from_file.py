@@ -9,7 +9,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, ClassVar, Literal
 
-from pydantic import AfterValidator
+from pydantic import AfterValidator, Field
 
 from roughmdr.ensemble.ensemble import Ensemble
 from roughmdr.ensemble.source import Source
@@ -44,7 +44,8 @@ class FromFile(Source):
 
     is_random: ClassVar[bool] = False
 
-    file: Annotated[str, AfterValidator(_check_file)]
+    file: Annotated[str, AfterValidator(_check_file), Field(examples=['"map.nc"'])]
+    """File of the map or of the ensemble, relative to the scene."""
 
     def read(self) -> Ensemble:
         """Read the asperities of the file; SceneError where it cannot be read or describes no valid asperities."""

@@ -1,16 +1,17 @@
 """The interface of sources whose asperities lie on a patch: at random, apart from each other or on a lattice."""
 
 import math
-from typing import Annotated, ClassVar, Literal
+from typing import ClassVar, Literal
 
-from pydantic import BeforeValidator, StrictBool, ValidationInfo, field_validator, model_validator
+from pydantic import StrictBool, ValidationInfo, field_validator, model_validator
 
 from roughmdr.ensemble.lattice import LATTICES, Lattice, at_most, lattice_of, nearest_that_fit
-from roughmdr.ensemble.source import Source
+from roughmdr.ensemble.source import Patch, Source
 from roughmdr.ensemble.streams import Streams
 from roughmdr.errors import RoughmdrError
 from roughmdr.numerics.arguments import Floats
-from roughmdr.schema.quantities import EntryError, Length, Quantity
+from roughmdr.schema.quantities import EntryError
+from roughmdr.schema.section import Length
 from roughmdr.schema.units import format_quantity
 
 MAX_COUNT = 1_000_000_000
@@ -30,10 +31,15 @@ class PatchSource(Source):
     """Whether ``core_distance`` is known without min_distance."""
 
     shape: str
-    patch: Annotated[float, BeforeValidator(Quantity("m", at_least=1e-150, at_most=1e150))]  # its square is a float
+    """Shape of the asperities, which decides the other keys."""
+    patch: Patch
+    """Side of the square nominal area, or of the square of the same area where a lattice has an oblong one."""
     placement: Literal["random", "hard_core", "square", "hexagonal"] = "random"
+    """Positions, for [interaction]: "random", "hard_core" with min_distance, "square" or "hexagonal"."""
     min_distance: Length | None = None
+    """Least distance of two asperities, for placement = "hard_core"."""
     vacancies: StrictBool = False
+    """Whether a lattice on a square patch, only nearly hexagonal, may have empty sites."""
 
     @field_validator("min_distance")
     @classmethod

@@ -3,14 +3,18 @@
 import math
 from collections.abc import Callable, Iterator
 from pathlib import Path
-from typing import ClassVar
+from typing import Annotated, ClassVar
 
 from roughmdr.ensemble.ensemble import Ensemble
 from roughmdr.ensemble.maps.height_map import HeightMap
 from roughmdr.ensemble.nodes import Nodes, Rule
 from roughmdr.numerics.arguments import Floats
-from roughmdr.schema.quantities import Section
+from roughmdr.schema.quantities import Quantity
+from roughmdr.schema.section import Section
 from roughmdr.shapes import SharedProfile
+
+Patch = Annotated[float, Quantity("m", at_least=1e-150, at_most=1e150)]
+"""Side of a patch, whose square is a float."""
 
 
 class Source(Section):
@@ -28,6 +32,8 @@ class Source(Section):
     """What each paper on such summits is cited for, by its key in report/papers.bib."""
 
     source: str
+    """"random": from distributions; "nayak": summits of a Gaussian surface; "spectrum": hills or summits of maps of
+    one; "surface": those of a height map; "file": a saved ensemble."""
 
     @property
     def shape_name(self) -> str:

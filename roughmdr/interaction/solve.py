@@ -19,7 +19,7 @@ from roughmdr.interaction.green import Periodic
 from roughmdr.interaction.mesh import Mesh
 from roughmdr.interaction.newton import Equilibrium, State, System, solve, total_stiffness
 from roughmdr.interaction.placed_asperities import Placed
-from roughmdr.interaction.settings import DEFAULT_ERROR, Boundary, Interaction
+from roughmdr.interaction.settings import Boundary, Interaction
 from roughmdr.interaction.totals import Step, of_all, total
 from roughmdr.numerics.arguments import Floats
 from roughmdr.numerics.underway import each_step
@@ -207,7 +207,8 @@ def prepare(shape: str) -> None:
     example = kind(**kind.example())
     height, place = np.array([2e-3, 1e-3, 0.0]), np.array([0.0, 1.0, 3.0])
     ensemble = Ensemble.alike(example, height, {"x": place, "y": place}, 10.0)
-    solve_path(ensemble, np.zeros(1), 1.0, Interaction(), {"stiffness", "conductance_radius"})
-    mesh = Mesh(place / 10.0, place / 10.0, Periodic.of(1.0), True, DEFAULT_ERROR)
+    asked = Interaction(model="pairwise")
+    solve_path(ensemble, np.zeros(1), 1.0, asked, {"stiffness", "conductance_radius"})
+    mesh = Mesh(place / 10.0, place / 10.0, Periodic.of(1.0), True, asked.error)
     mesh.field(height)
     mesh.of_moments(height, height, height)

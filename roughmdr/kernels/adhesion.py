@@ -4,13 +4,17 @@ import math
 from typing import Literal, NamedTuple, get_args
 
 from roughmdr.errors import RoughmdrError
-from roughmdr.schema.arguments import check_number
 from roughmdr.schema.material import MaterialArguments
+from roughmdr.schema.quantities import Quantity
 
 Model = Literal["jkr", "dugdale"]
 AskedModel = Literal[Model, "auto"]
 PAPERS = {"jkr": ("Johnson1971",), "dugdale": ("Maugis1992", "Dugdale1960")}  # by model: keys in report/papers.bib
 DEFAULT_ERROR = 0.01  # default error of the force of "auto", over the largest force
+WORK = Quantity("J/m^2", at_least=0.0)
+STRENGTH = Quantity("Pa", above=0.0)
+RANGE = Quantity("m", above=0.0)
+ERROR = Quantity("1", above=0.0, at_most=1.0)
 
 
 class AdhesiveMaterial(MaterialArguments, total=False):
@@ -76,18 +80,30 @@ class Adhesion(NamedTuple):
 
         RoughmdrError for an unknown model or for what does not go together, OutOfRange for a number.
         """
-        work = check_number("work", work, "J/m^2", zero=True)
+        work = WORK.argument("work", work)
         if model not in get_args(AskedModel):
             raise RoughmdrError(f"adhesion is {model!r}; it must be 'jkr', 'dugdale' or 'auto'")
         try:
             check_combination(model, strength, range, error)
         except RoughmdrError as fault:
             raise RoughmdrError(f"adhesion {fault}") from None
-        stress = math.inf if strength is None else check_number("strength", strength, "Pa")
-        if range is not None:
-            stress = strength_of(work, check_number("range", range, "m"))
-        limit = check_number("error", DEFAULT_ERROR if error is None else error, "1") if model == "auto" else 0.0
-        return cls(work, model, stress, limit)
+        given = {"strength": (STRENGTH, strength), "range": (RANGE, range), "error": (ERROR, error)}
+        numbers = {name: reader.argument(name, value) for name, (reader, value) in given.items() if value is not None}
+        return cls.of(model, work, **numbers)
+
+    @classmethod
+    def of(
+        cls,
+        model: AskedModel,
+        work: float,
+        strength: float | None = None,
+        range: float | None = None,  # noqa: A002 - as in a scene
+        error: float | None = None,
+    ) -> "Adhesion":
+        """Return the model of numbers in SI that go together; OutOfRange where no float can hold work over range."""
+        stress = strength_of(work, range) if range is not None else (math.inf if strength is None else strength)
+        limit = DEFAULT_ERROR if error is None else error
+        return cls(work, model, stress, limit if model == "auto" else 0.0)
 
     @classmethod
     def from_arguments(cls, work: float | str, material: AdhesiveMaterial) -> "Adhesion":
@@ -113,7 +129,7 @@ def check_combination(model: str, strength: object, range: object, error: object
 
 def strength_of(work: float, range: float) -> float:  # noqa: A002
     """Return sigma0 = w/range [Pa], inf without adhesion; OutOfRange where no float can hold it."""
-    return check_number("work over range", work / range, "Pa") if work > 0.0 else math.inf
+    return STRENGTH.argument("work over range", work / range) if work > 0.0 else math.inf
 
 
 def release_stretch(radius: float, effective_modulus: float, work: float) -> float:

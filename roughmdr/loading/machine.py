@@ -17,10 +17,18 @@ import numpy as np
 from roughmdr.errors import OutOfRange
 from roughmdr.loading.path import LoadingPath, labelled_branches, rises_anywhere
 from roughmdr.numerics.arguments import Floats
+from roughmdr.schema.quantities import Quantity, WholeNumber
 from roughmdr.storage.labelled import Array
 from roughmdr.variables import COORDINATES, CURVE_VARIABLES, REMOTE, SEPARATION, TRAVEL
 
 Number = TypeVar("Number", float, Floats)
+STIFFNESS = Quantity("N/m", above=0.0, example='"1 kN/m"')
+PRELOAD = {
+    "preload": Quantity("N", above=0.0, example='"1 mN"'),
+    "preload_pressure": Quantity("Pa", above=0.0, example='"1 MPa"'),
+    "preload_contact_fraction": Quantity("1", above=0.0, at_most=1.0, example="0.02"),
+}
+STEPS = WholeNumber(2, 10_000_000, example="200")
 
 
 class Machine(NamedTuple):

@@ -74,7 +74,7 @@ class Snapshot(NamedTuple):
             scene.seed, realization, stratified=method == "stratified", with_positions=placed or scene.needs_positions
         )
         above = np.nanmax(path) + _FAR * (np.ptp(path[np.isfinite(path)]) + abs(np.nanmax(path)))
-        problem = Problem(ensemble, scene.effective_modulus, scene.adhesion_model, scene.interaction_model)
+        problem = Problem(ensemble, scene.effective_modulus, scene.adhesion_model, scene.interaction)
         contacts = contacts_at(problem, np.where(np.isnan(path), above, path), step)
         on_grid = _on_grid(result, (*cell, realization))
         if not on_grid:

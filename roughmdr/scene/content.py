@@ -2,7 +2,7 @@
 
 from typing import TYPE_CHECKING, Annotated, Any
 
-from pydantic import BeforeValidator, InstanceOf, create_model
+from pydantic import BeforeValidator, Field, InstanceOf, create_model
 
 from roughmdr.ensemble import Asperities
 from roughmdr.errors import RoughmdrError
@@ -14,13 +14,13 @@ from roughmdr.scene.sections import (
     AdhesionSection,
     Batch,
     Body,
-    InteractionSection,
     MaterialSection,
     Output,
 )
 from roughmdr.scene.sweep import Sweep
 from roughmdr.schema.material import effective_modulus
-from roughmdr.schema.quantities import Section, WholeNumber
+from roughmdr.schema.quantities import WholeNumber
+from roughmdr.schema.section import Section
 from roughmdr.stages import STAGES
 from roughmdr.stages.given_scene import AnySection
 from roughmdr.stages.stage import Stage
@@ -38,17 +38,29 @@ class _Sections(Section):
     """All sections of a scene but for the stages."""
 
     title: Annotated[str, BeforeValidator(_check_title)]
-    seed: Annotated[int, BeforeValidator(WholeNumber(0, 2**63 - 1))] = 0
+    """Title of results and pictures. Default: the name of the file."""
+    seed: Annotated[int, WholeNumber(0, 2**63 - 1)] = 0
+    """Seed of all random numbers: the same seed gives the same result to the last bit."""
     material: MaterialSection
+    """Elastic constants: effective_modulus alone, or modulus and poisson."""
     counter: Body | None = None
+    """The other body, which is rigid without this section."""
     adhesion: AdhesionSection | None = None
+    """Adhesion between the surfaces; none without this section."""
     asperities: Asperities
-    interaction: InteractionSection | None = None
+    """Where the asperities come from."""
+    interaction: Interaction | None = None
+    """How asperities feel each other; they are independent without this section."""
     path: FlatPath
+    """Way of the rigid flat, or what the machine does that moves it."""
     output: Output = Output()
+    """Variables of the result."""
     batch: Batch = Batch()
+    """Number of realisations, and how each is made."""
     accuracy: Accuracy | None = None
+    """An error asked for in place of a number of realisations."""
     sweep: InstanceOf[Sweep] = Sweep()
+    """Values of keys to run the scene with, by their dotted names in quotes."""
 
     def reason_against(self, estimator: str) -> str:
         """Return why the estimator "stratified" or "expected" is impossible; empty where it is possible."""
@@ -97,11 +109,6 @@ class _Sections(Section):
     def adhesion_model(self) -> Adhesion:
         """Adhesion model with its parameters."""
         return Adhesion() if self.adhesion is None else self.adhesion.adhesion_model
-
-    @property
-    def interaction_model(self) -> Interaction | None:
-        """Interaction with its parameters; None where asperities are independent."""
-        return None if self.interaction is None else self.interaction.interaction_model
 
     @property
     def stages(self) -> tuple[Stage, ...]:
@@ -155,5 +162,5 @@ class _Sections(Section):
 if TYPE_CHECKING:
     Sections = _Sections
 else:
-    _stages: dict[str, Any] = {stage.key: (stage | None, None) for stage in STAGES}
+    _stages: dict[str, Any] = {stage.key: (stage | None, Field(None, description=stage.about)) for stage in STAGES}
     Sections = create_model("Sections", __base__=_Sections, __doc__="All sections of a scene.", **_stages)

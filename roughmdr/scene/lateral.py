@@ -3,12 +3,13 @@
 from typing import Annotated, Any
 
 import numpy as np
-from pydantic import BeforeValidator, Discriminator, Field, Tag, model_validator
+from pydantic import Discriminator, Field, Tag, model_validator
 
 from roughmdr.errors import RoughmdrError, SceneError
 from roughmdr.numerics.arguments import Floats
 from roughmdr.schema.faults import mismatch
-from roughmdr.schema.quantities import EntryError, Quantity, Section, WholeNumber
+from roughmdr.schema.quantities import EntryError, Quantity, WholeNumber
+from roughmdr.schema.section import Section
 
 _MAX_STEPS = 10_000_000
 _LENGTH, _AMPLITUDE = Quantity("m"), Quantity("m", above=0.0)
@@ -23,11 +24,16 @@ class LateralRange(Section):
     way from 0 to the amplitude: 1 + (1 + 4 cycles) steps in all, the first at 0.
     """
 
-    start: Annotated[float, BeforeValidator(_LENGTH)] = 0.0
-    stop: Annotated[float, BeforeValidator(_LENGTH)] | None = None
-    amplitude: Annotated[float, BeforeValidator(_AMPLITUDE)] | None = None
-    cycles: Annotated[int, BeforeValidator(WholeNumber(1, 1_000_000))] = 1
-    steps: Annotated[int, BeforeValidator(WholeNumber(2, _MAX_STEPS))]
+    start: Annotated[float, _LENGTH] = 0.0
+    """First lateral displacement."""
+    stop: Annotated[float, _LENGTH] | None = None
+    """Last lateral displacement."""
+    amplitude: Annotated[float, _AMPLITUDE] | None = None
+    """Lateral displacement at which cycles about 0 turn, in place of stop."""
+    cycles: Annotated[int, WholeNumber(1, 1_000_000)] = 1
+    """Number of cycles after the first loading: to minus the amplitude and back."""
+    steps: Annotated[int, WholeNumber(2, _MAX_STEPS, example="50")]
+    """Number of steps, both ends included; with amplitude those of a quarter of a cycle."""
 
     @model_validator(mode="after")
     def _range_or_cycles(self) -> "LateralRange":
@@ -58,7 +64,7 @@ def kind_of(value: object) -> str | None:
 
 Lateral = Annotated[
     Annotated[LateralRange, Tag("range")]
-    | Annotated[list[Annotated[float, BeforeValidator(_LENGTH)]], Field(min_length=1), Tag("list")],
+    | Annotated[list[Annotated[float, _LENGTH]], Field(min_length=1), Tag("list")],
     Discriminator(
         kind_of,
         custom_error_type="neither",

@@ -1,71 +1,88 @@
 """[path]: the separations of the rigid flat, or what the machine does that moves it."""
 
 import math
-from typing import Annotated, Any
+from collections.abc import Mapping
+from typing import Annotated, Any, ClassVar, TypeVar
 
 import numpy as np
-from pydantic import BeforeValidator, Discriminator, Field, StrictBool, Tag, model_validator
+from pydantic import Discriminator, Field, StrictBool, Tag, model_validator
 
 from roughmdr.errors import SceneError
-from roughmdr.loading.machine import Preload, travel
+from roughmdr.loading.machine import PRELOAD, STEPS, STIFFNESS, Preload, travel
 from roughmdr.numerics.arguments import Floats
 from roughmdr.scene.lateral import Lateral, check_held, check_single_values, kind_of
 from roughmdr.scene.separation import CLEAR, Separation, SeparationReader, Target
 from roughmdr.schema.faults import mismatch
-from roughmdr.schema.quantities import Quantity, Section, WholeNumber
-from roughmdr.schema.units import DIMENSIONLESS
+from roughmdr.schema.quantities import Quantity, WholeNumber
+from roughmdr.schema.section import Section
 from roughmdr.variables import CONTROLS, DEFAULT_STEPS, PRELOADS, TRAVEL
 
 _START = SeparationReader(clear=True, other=f', or "{CLEAR}"')
 _STOP = SeparationReader(other=', or a target such as { contact_fraction = 0.02 } or { pressure = "1 MPa" }')
-_FORCE, _PRESSURE = Quantity("N"), Quantity("Pa")
 _PER_AREA = ("pressure", "preload_pressure", "preload_contact_fraction")
-_STEPS = WholeNumber(2, 10_000_000)
-_Separation = Annotated[Separation, BeforeValidator(SeparationReader())]
+_Separation = Annotated[Separation, SeparationReader(example='"-2 sigma"')]
+_SeparationOrTarget = Annotated[
+    Annotated[Target, Tag("target")] | Annotated[Separation, _STOP, Tag("distance")],
+    Discriminator(lambda value: "target" if isinstance(value, dict | Target) else "distance"),
+    Field(examples=['"0 sigma"']),
+]
+_Force = Annotated[float, Quantity("N", example='"1 mN"')]
+_Pressure = Annotated[float, Quantity("Pa", example='"1 MPa"')]
 
 
 class Range(Section):
     """``steps`` separations from ``start`` to ``stop``, both included; ``start`` is None for "clear"."""
 
-    start: Annotated[Separation | None, BeforeValidator(_START)] = None
-    stop: Annotated[
-        Annotated[Target, Tag("target")] | Annotated[Separation, BeforeValidator(_STOP), Tag("distance")],
-        Discriminator(lambda value: "target" if isinstance(value, dict | Target) else "distance"),
-    ]
-    steps: Annotated[int, BeforeValidator(_STEPS)]
+    start: Annotated[Separation | None, _START] = None
+    """First separation, or position of the spring; "clear": where nothing touches. Default: "clear"."""
+    stop: _SeparationOrTarget
+    """Where loading ends: a separation, or { contact_fraction = ... } or { pressure = ... }."""
+    steps: Annotated[int, STEPS]
+    """Number of steps, both ends included."""
 
 
-class RemoteRange(Section):
+class RemoteRange(Range):
     """``steps`` positions of the far end of the machine's spring from ``start`` to ``stop``, both included."""
 
-    start: Annotated[Separation | None, BeforeValidator(_START)] = None
-    stop: Annotated[Separation, BeforeValidator(SeparationReader())]
-    steps: Annotated[int, BeforeValidator(_STEPS)]
+    stop: _Separation
+    """Where loading ends."""
 
 
 class ForceRange(Section):
     """``steps`` loads from ``start`` to ``stop``, both included."""
 
-    start: Annotated[float, BeforeValidator(_FORCE)] = 0.0
-    stop: Annotated[float, BeforeValidator(_FORCE)]
-    steps: Annotated[int, BeforeValidator(_STEPS)]
+    start: _Force = 0.0
+    """First load."""
+    stop: _Force
+    """Last load."""
+    steps: Annotated[int, STEPS]
+    """Number of steps, both ends included."""
 
 
-class PressureRange(Section):
+class PressureRange(ForceRange):
     """``steps`` loads over the nominal area from ``start`` to ``stop``, both included."""
 
-    start: Annotated[float, BeforeValidator(_PRESSURE)] = 0.0
-    stop: Annotated[float, BeforeValidator(_PRESSURE)]
-    steps: Annotated[int, BeforeValidator(_STEPS)]
+    start: _Pressure = 0.0
+    stop: _Pressure
 
 
+_Range = TypeVar("_Range")
+_Value = TypeVar("_Value")
 _NEITHER = "must be a table with start, stop and steps, or a list"
-_RangeOrList = Discriminator(kind_of, custom_error_type="neither", custom_error_message=_NEITHER)
-_RangeListOrHeld = Discriminator(
-    lambda value: "held" if isinstance(value, float | int | str | Separation) else kind_of(value),
-    custom_error_type="neither",
-    custom_error_message=_NEITHER,
-)
+_RangeOrList = Annotated[
+    Annotated[_Range, Tag("range")] | Annotated[list[_Value], Field(min_length=1), Tag("list")],
+    Discriminator(kind_of, custom_error_type="neither", custom_error_message=_NEITHER),
+]
+_RangeListOrHeld = Annotated[
+    Annotated[_Range, Tag("range")]
+    | Annotated[list[_Value], Field(min_length=1), Tag("list")]
+    | Annotated[_Value, Tag("held")],
+    Discriminator(
+        lambda value: "held" if isinstance(value, float | int | str | Separation) else kind_of(value),
+        custom_error_type="neither",
+        custom_error_message=_NEITHER,
+    ),
+]
 
 
 class FlatPath(Section):
@@ -78,50 +95,32 @@ class FlatPath(Section):
     spring. ``unload`` appends the steps in reverse, after ``hold`` more at the last.
     """
 
-    separation: (
-        Annotated[
-            Annotated[Range, Tag("range")]
-            | Annotated[list[_Separation], Field(min_length=1), Tag("list")]
-            | Annotated[Separation, BeforeValidator(SeparationReader()), Tag("held")],
-            _RangeListOrHeld,
-        ]
-        | None
-    ) = None
-    remote: (
-        Annotated[
-            Annotated[RemoteRange, Tag("range")] | Annotated[list[_Separation], Field(min_length=1), Tag("list")],
-            _RangeOrList,
-        ]
-        | None
-    ) = None
-    force: (
-        Annotated[
-            Annotated[ForceRange, Tag("range")]
-            | Annotated[list[Annotated[float, BeforeValidator(_FORCE)]], Field(min_length=1), Tag("list")]
-            | Annotated[float, BeforeValidator(_FORCE), Tag("held")],
-            _RangeListOrHeld,
-        ]
-        | None
-    ) = None
-    pressure: (
-        Annotated[
-            Annotated[PressureRange, Tag("range")]
-            | Annotated[list[Annotated[float, BeforeValidator(_PRESSURE)]], Field(min_length=1), Tag("list")]
-            | Annotated[float, BeforeValidator(_PRESSURE), Tag("held")],
-            _RangeListOrHeld,
-        ]
-        | None
-    ) = None
+    examples: ClassVar[Mapping[str, str]] = {"separation": '{ start = "4 sigma", stop = "0 sigma", steps = 200 }'}
+
+    separation: _RangeListOrHeld[Range, _Separation] | None = None
+    """Separations of the flat from the datum plane: a table of start, stop and steps, or a list."""
+    remote: _RangeOrList[RemoteRange, _Separation] | None = None
+    """Positions of the far end of the machine's spring: a table of start, stop and steps, or a list."""
+    force: _RangeListOrHeld[ForceRange, _Force] | None = None
+    """Dead loads in place of separations: a table of start, stop and steps, or a list."""
+    pressure: _RangeListOrHeld[PressureRange, _Pressure] | None = None
+    """Dead loads over the nominal area: a table of start, stop and steps, or a list."""
     lateral: Lateral | None = None
-    machine_stiffness: Annotated[float, BeforeValidator(Quantity("N/m", above=0.0))] | None = None
-    preload: Annotated[float, BeforeValidator(Quantity("N", above=0.0))] | None = None
-    preload_pressure: Annotated[float, BeforeValidator(Quantity("Pa", above=0.0))] | None = None
-    preload_contact_fraction: (
-        Annotated[float, BeforeValidator(Quantity(DIMENSIONLESS, above=0.0, at_most=1.0))] | None
-    ) = None
-    steps: Annotated[int, BeforeValidator(_STEPS)] = DEFAULT_STEPS
-    hold: Annotated[int, BeforeValidator(WholeNumber(0, 1_000_000))] = 0
+    """Lateral displacements, while a single separation, force or pressure is held."""
+    machine_stiffness: Annotated[float, STIFFNESS] | None = None
+    """Stiffness of the spring, with remote or a preload."""
+    preload: Annotated[float, PRELOAD["preload"]] | None = None
+    """Load until this force; with unload = true pull it off then."""
+    preload_pressure: Annotated[float, PRELOAD["preload_pressure"]] | None = None
+    """Load until this force over the nominal area."""
+    preload_contact_fraction: Annotated[float, PRELOAD["preload_contact_fraction"]] | None = None
+    """Load until this contact area over the nominal area."""
+    steps: Annotated[int, STEPS] = DEFAULT_STEPS
+    """Number of steps of the loading to a preload."""
+    hold: Annotated[int, WholeNumber(0, 1_000_000)] = 0
+    """Steps more at the last one, before unload."""
     unload: StrictBool = False
+    """Whether the steps follow in reverse."""
 
     @model_validator(mode="before")
     @classmethod
@@ -175,9 +174,9 @@ class FlatPath(Section):
         return f"path.{self.key}" if self.key in _PER_AREA else ""
 
     @property
-    def _steps(self) -> Range | RemoteRange | ForceRange | PressureRange | list[Any]:
+    def _steps(self) -> Range | ForceRange | list[Any]:
         steps = getattr(self, self.control)
-        return steps if isinstance(steps, Range | RemoteRange | ForceRange | PressureRange | list) else [steps]
+        return steps if isinstance(steps, Range | ForceRange | list) else [steps]
 
     @property
     def _ends(self) -> list[Separation | Target | float | None]:

@@ -105,7 +105,7 @@ class Scene(Sections):
         if not asperities.is_random and realizations > 1:
             message = f"must be 1 with source {asperities.source!r}: nothing in it is random"
             raise mismatch("batch.realizations", message)
-        coupling = self.interaction_model
+        coupling = self.interaction
         if coupling is not None and (reason := reason_against_adhesion(coupling, self.adhesion_model)):
             raise mismatch("interaction", reason)
         self._check_stages()

@@ -1,16 +1,15 @@
 """Sections of a scene: their keys, defaults and bounds."""
 
-import math
-from typing import Annotated, Literal
+from collections.abc import Mapping
+from typing import Annotated, ClassVar, Literal
 
 from pydantic import BeforeValidator, Field, WithJsonSchema, field_validator, model_validator
 
 from roughmdr.errors import RoughmdrError
-from roughmdr.interaction.settings import DEFAULT_ERROR as DEFAULT_SOLVER_ERROR
-from roughmdr.interaction.settings import LEAST_ERROR, MOST_ERROR, Beyond, Boundary, Interaction, Model
-from roughmdr.kernels.adhesion import DEFAULT_ERROR, Adhesion, AskedModel, check_combination, strength_of
-from roughmdr.schema.material import check_one_body
-from roughmdr.schema.quantities import EntryError, Quantity, Section, WholeNumber
+from roughmdr.kernels.adhesion import ERROR, RANGE, STRENGTH, WORK, Adhesion, AskedModel, check_combination
+from roughmdr.schema.material import MODULUS, POISSON, check_one_body
+from roughmdr.schema.quantities import Quantity, WholeNumber
+from roughmdr.schema.section import Section
 from roughmdr.variables import (
     DEFAULT_VARIABLES,
     LAW_VARIABLES,
@@ -21,23 +20,32 @@ from roughmdr.variables import (
 )
 
 _MAX_REALIZATIONS = 1_000_000_000
-_Modulus = Annotated[float, BeforeValidator(Quantity("Pa", above=0.0))]
-_Poisson = Annotated[float, BeforeValidator(Quantity("1", above=-1.0, at_most=0.5))]
+_Modulus = Annotated[float, MODULUS]
+_Poisson = Annotated[float, POISSON]
 
 
 class Body(Section):
     """[counter]: an elastic body."""
 
+    examples: ClassVar[Mapping[str, str]] = {"modulus": '"70 GPa"', "poisson": "0.22"}
+
     modulus: _Modulus
+    """Young's modulus."""
     poisson: _Poisson
+    """Poisson's ratio."""
 
 
 class MaterialSection(Section):
     """[material]: effective_modulus alone, or modulus and poisson."""
 
+    examples: ClassVar[Mapping[str, str]] = {"modulus": '"3 MPa"', "poisson": "0.49"}
+
     effective_modulus: _Modulus | None = None
+    """E*, 1/E* = (1 - nu1^2)/E1 + (1 - nu2^2)/E2; in place of all others."""
     modulus: _Modulus | None = None
+    """Young's modulus."""
     poisson: _Poisson | None = None
+    """Poisson's ratio."""
 
     @model_validator(mode="after")
     def _effective_or_youngs(self) -> "MaterialSection":
@@ -51,11 +59,18 @@ class AdhesionSection(Section):
     "auto" uses JKR if its force differs from Dugdale's by at most ``error`` of the largest force.
     """
 
+    examples: ClassVar[Mapping[str, str]] = {"model": '"jkr"', "work": '"50 mJ/m^2"'}
+
     model: AskedModel
-    work: Annotated[float, BeforeValidator(Quantity("J/m^2", at_least=0.0))]
-    strength: Annotated[float, BeforeValidator(Quantity("Pa", above=0.0))] | None = None
-    range: Annotated[float, BeforeValidator(Quantity("m", above=0.0))] | None = None
-    error: Annotated[float, BeforeValidator(Quantity("1", above=0.0, at_most=1.0))] | None = None
+    """"jkr" where the Tabor number is large, "dugdale" of finite range, "auto": JKR where it is right."""
+    work: Annotated[float, WORK]
+    """Work of adhesion of the pair, not the surface energy of one side."""
+    strength: Annotated[float, STRENGTH] | None = None
+    """Stress of the attraction, for "dugdale" and "auto"."""
+    range: Annotated[float, RANGE] | None = None
+    """Range of the attraction, work/strength, in place of strength."""
+    error: Annotated[float, ERROR] | None = None
+    """For "auto": JKR is used where its force is off by less, over the largest force. Default: 0.01."""
 
     @model_validator(mode="after")
     def _combination(self) -> "AdhesionSection":
@@ -66,38 +81,7 @@ class AdhesionSection(Section):
     @property
     def adhesion_model(self) -> Adhesion:
         """Adhesion model with its parameters."""
-        strength = math.inf if self.strength is None else self.strength
-        if self.range is not None:
-            strength = strength_of(self.work, self.range)
-        error = 0.0 if self.model != "auto" else (DEFAULT_ERROR if self.error is None else self.error)
-        return Adhesion(self.work, self.model, strength, error)
-
-
-class InteractionSection(Section):
-    """[interaction]: how asperities feel each other; see ``Interaction``."""
-
-    model: Model
-    boundary: Boundary = "periodic"
-    order: Annotated[int, BeforeValidator(WholeNumber(1, 2))] = 2
-    error: Annotated[float, BeforeValidator(Quantity("1", at_least=LEAST_ERROR, at_most=MOST_ERROR))] = (
-        DEFAULT_SOLVER_ERROR
-    )
-    beyond: Beyond = "flag"
-
-    @model_validator(mode="after")
-    def _combination(self) -> "InteractionSection":
-        if self.model != "pairwise":
-            for key in ("order", "error", "beyond"):
-                if key in self.model_fields_set:
-                    raise EntryError(key, getattr(self, key), 'goes with model = "pairwise" only')
-        if self.beyond == "boundary_elements" and self.boundary == "free":
-            raise EntryError("beyond", self.beyond, 'does not go with boundary = "free": the grid repeats')
-        return self
-
-    @property
-    def interaction_model(self) -> Interaction:
-        """Interaction with its parameters."""
-        return Interaction(self.model, self.boundary, self.order, self.error, self.beyond)
+        return Adhesion.of(self.model, self.work, self.strength, self.range, self.error)
 
 
 def _check_variable(value: object) -> object:
@@ -118,7 +102,9 @@ class Output(Section):
     """[output]: variables of the result, as curves of every realisation or as statistics."""
 
     variables: Annotated[list[_VARIABLE], Field(min_length=1)] = Field(default=list(DEFAULT_VARIABLES))
+    """Variables over the steps that are computed and stored."""
     keep: Literal["curves", "statistics"] = "curves"
+    """"curves" of each realisation, or their "statistics": mean, standard error, least and greatest."""
 
     @field_validator("variables")
     @classmethod
@@ -134,7 +120,9 @@ class Batch(Section):
     """
 
     estimator: Literal["sampled", "stratified", "expected"] = "sampled"
-    realizations: Annotated[int, BeforeValidator(WholeNumber(1, _MAX_REALIZATIONS))] = 1
+    """"sampled" at random, "stratified": evenly spread, "expected": the mean law by integration."""
+    realizations: Annotated[int, WholeNumber(1, _MAX_REALIZATIONS)] = 1
+    """Number of random ensembles."""
 
 
 class Accuracy(Section):
@@ -145,6 +133,11 @@ class Accuracy(Section):
     ``method`` "auto" uses the cheaper of stratified draws and the expected law, if the latter is accurate enough.
     """
 
-    relative: Annotated[float, BeforeValidator(Quantity("1", above=0.0, at_most=1.0))]
-    max_realizations: Annotated[int, BeforeValidator(WholeNumber(2, _MAX_REALIZATIONS))] = 10_000
+    examples: ClassVar[Mapping[str, str]] = {"relative": "1e-2"}
+
+    relative: Annotated[float, Quantity("1", above=0.0, at_most=1.0)]
+    """Standard error of the mean force over its largest value."""
+    max_realizations: Annotated[int, WholeNumber(2, _MAX_REALIZATIONS)] = 10_000
+    """Most realisations of a cell."""
     method: Literal["auto", "sampled", "stratified", "expected"] = "auto"
+    """"auto": the cheaper of draws and the expected law; or an estimator."""

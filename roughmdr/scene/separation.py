@@ -2,13 +2,14 @@
 
 import re
 from dataclasses import dataclass
-from typing import Annotated, ClassVar, NamedTuple
+from typing import Annotated, NamedTuple
 
-from pydantic import BeforeValidator, model_validator
+from pydantic import model_validator
 
 from roughmdr.errors import RoughmdrError
 from roughmdr.schema.json_schema import JsonSchema
-from roughmdr.schema.quantities import Quantity, Section
+from roughmdr.schema.quantities import Quantity, Reader
+from roughmdr.schema.section import Section
 from roughmdr.schema.units import DIMENSIONLESS, NUMBER, quantity, quantity_pattern
 
 _SIGMA = re.compile(rf"\s*({NUMBER})\s*sigma\s*")
@@ -30,12 +31,12 @@ CLEAR = "clear"
 
 
 @dataclass(frozen=True)
-class SeparationReader:
+class SeparationReader(Reader):
     """Reads a separation; where ``clear`` is allowed, that is None."""
 
     clear: bool = False
     other: str = ""  # in messages: other entries that are allowed
-    dimension: ClassVar[str] = "m"
+    dimension = "m"
 
     def __call__(self, value: object) -> Separation | None:
         """Return the separation, in metres or in sigma."""
@@ -67,8 +68,10 @@ class SeparationReader:
 class Target(Section):
     """The largest separation at which loading reaches a contact fraction [1] or a pressure [Pa]."""
 
-    contact_fraction: Annotated[float, BeforeValidator(Quantity(DIMENSIONLESS, above=0.0, at_most=1.0))] | None = None
-    pressure: Annotated[float, BeforeValidator(Quantity("Pa", above=0.0))] | None = None
+    contact_fraction: Annotated[float, Quantity(DIMENSIONLESS, above=0.0, at_most=1.0)] | None = None
+    """Contact area over nominal area at which loading ends."""
+    pressure: Annotated[float, Quantity("Pa", above=0.0)] | None = None
+    """Force over nominal area at which loading ends."""
 
     @model_validator(mode="after")
     def _one_of_them(self) -> "Target":

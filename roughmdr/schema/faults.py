@@ -1,70 +1,36 @@
 """pydantic's validation errors as faults of a scene: the dotted key, its value, and what is allowed."""
 
 import copy
-from collections.abc import Iterable
+from collections.abc import Mapping
 from functools import reduce
 from operator import getitem
 from typing import Any, get_args
 
-from pydantic import BaseModel, ValidationError
+from pydantic import BaseModel, TypeAdapter, ValidationError
+from pydantic.fields import FieldInfo
 from pydantic_core import PydanticCustomError
 
-from roughmdr.errors import Fault
+from roughmdr.errors import Fault, SceneError
 from roughmdr.schema.quantities import EntryError
+from roughmdr.schema.section import reader_of
 from roughmdr.schema.wording import close_matches, printable, short_repr, suggestion
 
 _Sections = list[type[BaseModel]]
 _INCOMPLETE = ("is missing", "needs ", "must be a table")  # beginnings of messages that an example follows
-_SECTIONS = {
-    "material": {"modulus": '"3 MPa"', "poisson": "0.49"},
-    "counter": {"modulus": '"70 GPa"', "poisson": "0.22"},
-    "adhesion": {"model": '"jkr"', "work": '"50 mJ/m^2"'},
-    "asperities": {
-        "source": '"random"',
-        "shape": '"paraboloid"',
-        "count": "2000",
-        "patch": '"1 mm"',
-        "height": '{ distribution = "normal", std = "1 um" }',
-        "radius": '"50 um"',
-    },
-    "interaction": {"model": '"pairwise"'},
-    "path": {"separation": '{ start = "4 sigma", stop = "0 sigma", steps = 200 }'},
-    "accuracy": {"relative": "1e-2"},
-}
-_KEYS = {
-    "asperities.file": '"map.nc"',
-    "asperities.second.share": "0.2",
-    "asperities.exponent": "2.0",
-    "asperities.slope": "0.1",
-    "asperities.flat_radius": '"1 um"',
-    "asperities.blend_radius": '"1 um"',
-    "asperities.cap_radius": '"100 um"',
-    "asperities.edge_radius": '"1 um"',
-    "asperities.terms": '{ "2" = 1e4, "4" = 1e14 }',
-    "asperities.r": '[0, "1 um", "2 um"]',
-    "asperities.f": '[0, "10 nm", "50 nm"]',
-    "path.separation.start": '"4 sigma"',
-    "path.separation.stop": '"0 sigma"',
-    "path.separation.steps": "200",
-    "path.force.stop": '"1 mN"',
-    "path.force.steps": "200",
-    "path.pressure.stop": '"1 MPa"',
-    "path.pressure.steps": "200",
-    "path.remote.stop": '"-2 sigma"',
-    "path.remote.steps": "200",
-    "path.lateral.steps": "50",
-    "path.machine_stiffness": '"1 kN/m"',
-    "path.preload": '"1 mN"',
-    "path.preload_pressure": '"1 MPa"',
-    "path.preload_contact_fraction": "0.02",
-    "path.steps": "200",
-    **{f"{section}.{key}": value for section, keys in _SECTIONS.items() for key, value in keys.items()},
-}
 
 
 def mismatch(key: str, message: str) -> PydanticCustomError:
     """Return the error that a section raises if ``key``, dotted from the top of the scene, does not go with others."""
     return PydanticCustomError("mismatch", "{message}", {"key": key, "message": message})
+
+
+def validated(declared: Any, table: Mapping[str, Any], key: str) -> Any:
+    """Return a table, the argument ``key`` of a Python function, as it is declared; SceneError with all its faults."""
+    try:
+        return TypeAdapter(declared).validate_python(table)
+    except ValidationError as error:
+        faults = find_faults(error, dict(table), declared)
+        raise SceneError.of([fault._replace(key=f"{key}.{fault.key}".removesuffix(".")) for fault in faults]) from None
 
 
 def find_faults(error: ValidationError, data: dict[str, Any], declared: Any) -> list[Fault]:
@@ -179,14 +145,19 @@ def _tags(sections: _Sections, discriminator: str) -> list[str]:
 
 def _example_of(key: str, declared: Any) -> str:
     """Return what to write for a dotted key or section of a scene, or a key of [asperities]; empty if there is none."""
-    outer, _, inner = key.partition(".")
-    fields = [section.model_fields[outer] for section in sections_of(declared) if outer in section.model_fields]
-    own = {name: value for field in fields for each in sections_of(field.annotation) for name, value in _own(each)}
-    if own_section := _SECTIONS.get(key) or (own if not inner else None):
-        return f"[{key}] " + ", ".join(f"{name} = {value}" for name, value in own_section.items())
-    value = own.get(inner) or _KEYS.get(key) or _KEYS.get(f"asperities.{key}")
-    return f"{key.rsplit('.', maxsplit=1)[-1]} = {value}" if value else ""
+    sections, examples = sections_of(declared), [""]
+    for name in key.split("."):
+        fields = [(section, section.model_fields[name]) for section in sections if name in section.model_fields]
+        examples = [f"{name} = {example}" for section, field in fields if (example := _own(section, name, field))]
+        sections = [inner for _, field in fields for inner in sections_of(field.annotation)]
+    whole = next((table for section in sections if (table := getattr(section, "examples", {}))), {})
+    if whole and "." not in key:
+        return f"[{key}] " + ", ".join(f"{name} = {value}" for name, value in whole.items())
+    return examples[-1] if examples else ""
 
 
-def _own(section: type[BaseModel]) -> Iterable[tuple[str, str]]:
-    return getattr(section, "examples", {}).items()
+def _own(section: type[BaseModel], name: str, field: FieldInfo) -> str:
+    """Return the example of a key: that of its section, or else its own."""
+    reader = None if sections_of(field.annotation) else reader_of((*field.metadata, field.annotation))
+    examples = getattr(section, "examples", {}).get(name), *(field.examples or ()), reader.example if reader else ""
+    return next(filter(None, examples), "")

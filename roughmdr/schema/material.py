@@ -5,8 +5,11 @@ from collections.abc import Callable
 from typing import Any, TypedDict
 
 from roughmdr.errors import OutOfRange, RoughmdrError
-from roughmdr.schema.arguments import check_number, check_poisson
 from roughmdr.schema.keywords import named_keywords
+from roughmdr.schema.quantities import Quantity
+
+MODULUS = Quantity("Pa", above=0.0)
+POISSON = Quantity("1", above=-1.0, at_most=0.5)
 
 
 class MaterialArguments(TypedDict, total=False):
@@ -62,9 +65,9 @@ def effective_modulus(
     compliance = 0.0
     bodies = (("", modulus, poisson), ("counter_", counter_modulus, counter_poisson))
     for prefix, stiffness, ratio in bodies:
-        nu = check_poisson(f"{prefix}poisson", ratio)
+        nu = POISSON.argument(f"{prefix}poisson", ratio)
         if not prefix or stiffness != math.inf:
-            compliance += (1.0 - nu * nu) / check_number(f"{prefix}modulus", stiffness, "Pa")
+            compliance += (1.0 - nu * nu) / MODULUS.argument(f"{prefix}modulus", stiffness)
     if not 1e-300 < compliance < 1e300:
         moduli = f"modulus = {modulus!r} and counter_modulus = {counter_modulus!r}"
         raise OutOfRange(f"E* of {moduli} [Pa] is not representable")
@@ -96,7 +99,7 @@ def effective_modulus_of(function: Callable[..., Any], material: MaterialArgumen
     except RoughmdrError as error:
         raise RoughmdrError(f"{function.__name__} {error}; got {' and '.join(given) or 'none of them'}") from None
     if "effective_modulus" in given:
-        return check_number("effective_modulus", given["effective_modulus"], "Pa")
+        return MODULUS.argument("effective_modulus", given["effective_modulus"])
     return effective_modulus(**given)
 
 

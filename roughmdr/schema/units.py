@@ -4,6 +4,7 @@ import math
 import re
 from decimal import Decimal
 from functools import cache
+from numbers import Real
 from typing import Any
 
 from roughmdr.errors import RoughmdrError
@@ -79,7 +80,7 @@ def quantity(value: object, dimension: str) -> float:
     wanted = f"expected a number in {dimension} or a string like {_EXAMPLES.get(dimension, 'a plain number')}"
     wanted = "expected a plain number" if dimension == DIMENSIONLESS else wanted
     match = _QUANTITY.fullmatch(value) if isinstance(value, str) else None
-    if match is None and (isinstance(value, bool) or not isinstance(value, int | float)):
+    if match is None and (isinstance(value, bool) or not isinstance(value, Real)):
         raise RoughmdrError(wanted)
     try:
         exact: Any = Decimal(match[1]) * unit_factor(match[2], dimension) if match else value

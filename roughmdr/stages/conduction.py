@@ -5,7 +5,7 @@ from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 
 import numpy as np
-from pydantic import BeforeValidator, model_validator
+from pydantic import model_validator
 
 from roughmdr.errors import OutOfRange
 from roughmdr.schema.faults import mismatch
@@ -19,8 +19,8 @@ if TYPE_CHECKING:
     from roughmdr.loading.lateral import Path
     from roughmdr.numerics.arguments import Floats
 
-_Conductivity = Annotated[float, BeforeValidator(Quantity("W/m/K", above=0.0))]
-_Resistivity = Annotated[float, BeforeValidator(Quantity("ohm m", above=0.0))]
+_Conductivity = Annotated[float, Quantity("W/m/K", above=0.0)]
+_Resistivity = Annotated[float, Quantity("ohm m", above=0.0)]
 _NEEDED = dict(zip(CONDUCTANCES, ("conductivity", "resistivity"), strict=True))
 RADIUS = "conductance_radius"
 """Variable that conductances are proportional to."""
@@ -35,12 +35,6 @@ class Conduction(Stage):
     key = "conduction"
     about = "How the bodies conduct, for thermal_conductance and electrical_conductance"
     about_absent = "conductances"
-    words: ClassVar[Mapping[str, str]] = {
-        "conductivity": "Thermal conductivity, of both bodies unless counter_conductivity is given",
-        "counter_conductivity": "Thermal conductivity of the other body",
-        "resistivity": "Electrical resistivity, of both bodies unless counter_resistivity is given",
-        "counter_resistivity": "Electrical resistivity of the other body",
-    }
     examples: ClassVar[Mapping[str, str]] = {"conductivity": '"400 W/m/K"', "resistivity": '"17e-9 ohm m"'}
     small_scene: ClassVar[Mapping[str, Any]] = {
         "conduction": {"conductivity": "400 W/m/K"},
@@ -50,9 +44,13 @@ class Conduction(Stage):
     papers: ClassVar[Mapping[str, str]] = {"Holm1967": "conductance", "Barber2003": "conductance"}
 
     conductivity: _Conductivity | None = None
+    """Thermal conductivity, of both bodies unless counter_conductivity is given."""
     counter_conductivity: _Conductivity | None = None
+    """Thermal conductivity of the other body."""
     resistivity: _Resistivity | None = None
+    """Electrical resistivity, of both bodies unless counter_resistivity is given."""
     counter_resistivity: _Resistivity | None = None
+    """Electrical resistivity of the other body."""
 
     @model_validator(mode="after")
     def _of_both_bodies(self) -> "Conduction":

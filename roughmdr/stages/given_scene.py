@@ -3,7 +3,7 @@
 
 from typing import TYPE_CHECKING, Any, Protocol, TypeVar
 
-from roughmdr.schema.quantities import Section
+from roughmdr.schema.section import Section
 
 if TYPE_CHECKING:
     from roughmdr.ensemble import Source

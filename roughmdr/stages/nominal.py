@@ -3,11 +3,11 @@
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 
-from pydantic import BeforeValidator, create_model, model_validator
+from pydantic import Field, create_model, model_validator
 
+from roughmdr.ensemble.random.sections_of_shapes import PARAMETERS
 from roughmdr.errors import ShapeError
 from roughmdr.kernels.adhesion import Adhesion
-from roughmdr.schema.descriptions import SHAPE_WORDS
 from roughmdr.schema.faults import mismatch
 from roughmdr.schema.quantities import EntryError, Quantity
 from roughmdr.schema.units import DIMENSIONLESS
@@ -40,11 +40,6 @@ class _Nominal(Stage):
     key = "nominal"
     about = "A curved body that presses the asperities, in place of the flat, on an elastic half-space"
     about_absent = "curvature of the bodies"
-    words: ClassVar[Mapping[str, str]] = {
-        **SHAPE_WORDS,
-        "shape": "Shape of the body, which decides the other keys",
-        "error": "Error of the force by the rings of the contact, over the largest force",
-    }
     small_scene: ClassVar[Mapping[str, Any]] = {
         "nominal": {"radius": "10 mm", "error": 1e-2},
         "batch": {"estimator": "expected"},
@@ -55,9 +50,9 @@ class _Nominal(Stage):
     papers: ClassVar[Mapping[str, str]] = {"Greenwood1967": "curvature"}
 
     shape: Literal[tuple(_BODIES)] = "paraboloid"  # type: ignore[valid-type]
-    error: Annotated[float, BeforeValidator(Quantity(DIMENSIONLESS, at_least=_LEAST_ERROR, at_most=_MOST_ERROR))] = (
-        DEFAULT_ERROR
-    )
+    """Shape of the body, which decides the other keys."""
+    error: Annotated[float, Quantity(DIMENSIONLESS, at_least=_LEAST_ERROR, at_most=_MOST_ERROR)] = DEFAULT_ERROR
+    """Error of the force by the rings of the contact, over the largest force."""
 
     @model_validator(mode="after")
     def _is_a_shape(self) -> "_Nominal":
@@ -172,7 +167,7 @@ if TYPE_CHECKING:
     Nominal = _Nominal
 else:
     _parameters: dict[str, Any] = {
-        name: (Annotated[float, BeforeValidator(Quantity(unit, above=0.0))] | None, None)
+        name: (Annotated[float, Quantity(unit, above=0.0)] | None, Field(None, description=PARAMETERS[name][0]))
         for name, unit in _UNITS.items()
     }
     Nominal = create_model("Nominal", __base__=_Nominal, __module__=__name__, **_parameters)

@@ -5,7 +5,6 @@ from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 
 import numpy as np
-from pydantic import BeforeValidator
 
 from roughmdr.errors import SceneError
 from roughmdr.schema.faults import mismatch
@@ -39,13 +38,14 @@ class Reference(Stage):
     key = "reference"
     about = "The surface itself by boundary elements, beside the law of its asperities, without adhesion"
     about_absent = "boundary elements"
-    words: ClassVar[Mapping[str, str]] = {"model": "Method", "error": "Relative error of its force by the grid"}
     small_scene: ClassVar[Mapping[str, Any]] = {"reference": {"model": "boundary_elements", "error": 0.5}}
     swept = False
     on_grid = True
 
     model: Literal["boundary_elements"]
-    error: Annotated[float, BeforeValidator(Quantity("1", at_least=_ERRORS[0], at_most=_ERRORS[1]))] = 0.02
+    """Method."""
+    error: Annotated[float, Quantity("1", at_least=_ERRORS[0], at_most=_ERRORS[1])] = 0.02
+    """Relative error of its force by the grid."""
 
     def check(self, scene: Given) -> None:
         """Raise a mismatch with adhesion, and with other paths."""

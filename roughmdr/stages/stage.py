@@ -8,7 +8,7 @@ import math
 from collections.abc import Callable, Iterator, Mapping
 from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Self
 
-from roughmdr.schema.quantities import Section
+from roughmdr.schema.section import Section
 from roughmdr.stages.given_scene import Given
 
 if TYPE_CHECKING:
@@ -48,8 +48,6 @@ class Stage(Section):
     """Name of the section."""
     about: ClassVar[str]
     """Line on the section, for editors."""
-    words: ClassVar[Mapping[str, str]]
-    """Line on each of its keys, for editors; those of a list of tables are "LIST[].KEY"."""
     small_scene: ClassVar[Mapping[str, Any]]
     """Sections of a small scene that compiles what the section needs."""
     swept: ClassVar[bool] = True

@@ -4,8 +4,6 @@ import math
 from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 
-from pydantic import BeforeValidator
-
 from roughmdr.errors import OutOfRange
 from roughmdr.schema.faults import mismatch
 from roughmdr.schema.material import dundurs_beta, stiffness_ratio
@@ -36,10 +34,6 @@ class Tangential(Stage):
     key = "tangential"
     about = "Friction, for path.lateral, and the tangential stiffness of the bodies"
     about_absent = "lateral forces"
-    words: ClassVar[Mapping[str, str]] = {
-        "friction": "Coefficient of friction",
-        "stiffness_ratio": "G*/E*, tangential over normal stiffness, where only effective_modulus is given",
-    }
     examples: ClassVar[Mapping[str, str]] = {"friction": "0.3"}
     small_scene: ClassVar[Mapping[str, Any]] = {
         "tangential": {"friction": 0.3},
@@ -53,10 +47,10 @@ class Tangential(Stage):
         ("Cattaneo1938", "Mindlin1949", "Jaeger1995", "Masing1926", "MindlinDeresiewicz1953"), "slip"
     )
 
-    friction: Annotated[float, BeforeValidator(Quantity("1", above=0.0))] | None = None
-    stiffness_ratio: (
-        Annotated[float, BeforeValidator(Quantity("1", at_least=_RATIOS[0], at_most=_RATIOS[1]))] | None
-    ) = None
+    friction: Annotated[float, Quantity("1", above=0.0)] | None = None
+    """Coefficient of friction."""
+    stiffness_ratio: Annotated[float, Quantity("1", at_least=_RATIOS[0], at_most=_RATIOS[1])] | None = None
+    """G*/E*, tangential over normal stiffness, where only effective_modulus is given."""
 
     @classmethod
     def usual_variables(cls, table: Mapping[str, Any]) -> list[str] | None:

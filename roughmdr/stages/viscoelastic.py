@@ -5,11 +5,12 @@ from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 
 import numpy as np
-from pydantic import BeforeValidator, Field, model_validator
+from pydantic import Field, model_validator
 
 from roughmdr.errors import Fault, SceneError
 from roughmdr.schema.faults import mismatch
-from roughmdr.schema.quantities import EntryError, Quantity, Section
+from roughmdr.schema.quantities import EntryError, Quantity
+from roughmdr.schema.section import Section
 from roughmdr.schema.units import format_quantity
 from roughmdr.stages.given_scene import Given
 from roughmdr.stages.stage import Contacts, Law, Stage
@@ -21,7 +22,7 @@ if TYPE_CHECKING:
     from roughmdr.numerics.arguments import Floats
     from roughmdr.stages.viscoelasticity.motion import FlatMotion
 
-_Speed = Annotated[float, BeforeValidator(Quantity("m/s", above=0.0))]
+_Speed = Annotated[float, Quantity("m/s", above=0.0)]
 _NOT_COMPUTED = ("stiffness", "energy", "dissipated_energy", "machine_dissipated_energy", "tangential_stiffness")
 """Variables that a viscoelastic law does not have."""
 
@@ -29,8 +30,10 @@ _NOT_COMPUTED = ("stiffness", "energy", "dissipated_energy", "machine_dissipated
 class RelaxationTerm(Section):
     """A term of the Prony series: the share of the instantaneous modulus that is lost, and its relaxation time."""
 
-    time: Annotated[float, BeforeValidator(Quantity("s", above=0.0))]
-    share: Annotated[float, BeforeValidator(Quantity("1", at_least=0.0, at_most=1.0))]
+    time: Annotated[float, Quantity("s", above=0.0)]
+    """Relaxation time."""
+    share: Annotated[float, Quantity("1", at_least=0.0, at_most=1.0)]
+    """Share of the instantaneous modulus that is lost; all together at most 1."""
 
 
 class Viscoelastic(Stage):
@@ -41,14 +44,6 @@ class Viscoelastic(Stage):
 
     key = "viscoelastic"
     about = "Relaxation of the modulus while the flat moves in time; the bodies are elastic without it"
-    words: ClassVar[Mapping[str, str]] = {
-        "relaxation": "Terms of a Prony series: each takes share (1 - exp(-t/time)) of the instantaneous modulus away",
-        "relaxation[].time": "Relaxation time",
-        "relaxation[].share": "Share of the instantaneous modulus that is lost; all together at most 1",
-        "speed": "Speed of the flat while loading",
-        "retraction_speed": "Speed of the flat while it rises. Default: speed",
-        "dwell": "Time at the lowest separation, spread over path.hold and the repeated turning point",
-    }
     examples: ClassVar[Mapping[str, str]] = {
         "relaxation": '[{ time = "10 ms", share = 0.5 }]',
         "speed": '"1 um/s"',
@@ -63,9 +58,13 @@ class Viscoelastic(Stage):
     more_separations = 5000  # points of the integral over the time, where curves have kinks
 
     relaxation: Annotated[list[RelaxationTerm], Field(min_length=1)]
+    """Terms of a Prony series: each takes share (1 - exp(-t/time)) of the instantaneous modulus away."""
     speed: _Speed
+    """Speed of the flat while loading."""
     retraction_speed: _Speed | None = None
-    dwell: Annotated[float, BeforeValidator(Quantity("s", at_least=0.0))] = 0.0
+    """Speed of the flat while it rises. Default: speed."""
+    dwell: Annotated[float, Quantity("s", at_least=0.0)] = 0.0
+    """Time at the lowest separation, spread over path.hold and the repeated turning point."""
 
     @model_validator(mode="after")
     def _shares(self) -> "Viscoelastic":

@@ -13,15 +13,17 @@ from roughmdr.errors import OutOfRange, RoughmdrError
 from roughmdr.numerics.arguments import Floats
 from roughmdr.numerics.chebyshev import PiecewiseChebyshev
 from roughmdr.numerics.quadrature import panel_rule, refine_edges, running_integral
-from roughmdr.schema.arguments import check_number, check_values
+from roughmdr.schema.arguments import check_values
 from roughmdr.schema.keywords import named_keywords
 from roughmdr.schema.material import MaterialArguments, effective_modulus_of
+from roughmdr.schema.quantities import Quantity
 from roughmdr.spectrum import MapSpectrum, SelfAffine, Spectrum, spectral_density, wave_number_range
 from roughmdr.theory.bush import check_load
 from roughmdr.theory.equal_summits import representable
 
 # Fourfold shorter intervals of log(q/q0) down to q0, where few waves are in play and the load flattens them all.
 _INTERVALS_TO_LONGEST = 45
+_GAMMA = Quantity("1", at_least=0.0, at_most=1.0)
 _EXP_ZERO = 30.0  # x beyond which exp(-x^2) is 0
 # Logarithms of the pressure over E* h' between which the root lies: of the squares of both a float holds what it must.
 _LOG_MIN, _LOG_MAX = -350.0, math.log(25.0)
@@ -114,8 +116,7 @@ def persson_separation(
     given = check_values("pressure", pressure, "Pa")
     if (given <= 0.0).any():
         raise OutOfRange(f"pressure is {np.min(given):g} Pa; it must be above 0")
-    if not (gamma := check_number("gamma", gamma, "1", zero=True)) <= 1.0:
-        raise OutOfRange(f"gamma is {gamma:g}; it must be from 0 to 1")
+    gamma = _GAMMA.argument("gamma", gamma)
     with np.errstate(all="ignore"):  # refused below
         q, squared_slope, change = _slopes(spectrum)
         x = given.reshape(-1, 1) / modulus / np.sqrt(squared_slope)

@@ -36,7 +36,7 @@ def planned(adhesion: Any = None, interaction: Any = None, **asperities: Any) ->
 def law_and_contacts(
     one: Scene, ensemble: Ensemble, separation: Floats, step: int
 ) -> tuple[LoadSeparation, EachContact]:
-    problem = Problem(ensemble, one.effective_modulus, one.adhesion_model, one.interaction_model)
+    problem = Problem(ensemble, one.effective_modulus, one.adhesion_model, one.interaction)
     path = LoadingPath.along(separation, unload=False, adhesive=one.work > 0.0)
     law = simulate(problem, path, ["force", "contact_radius_sum", "contact_count"])
     return law, contacts_at(problem, separation, step)

@@ -16,7 +16,7 @@ from roughmdr.ensemble.patch_source import LATTICE_CONSTANTS
 from roughmdr.interaction import Interaction
 
 E = 4e6
-FREE, PERIODIC = (Interaction("mean_field", boundary) for boundary in ("free", "periodic"))
+FREE, PERIODIC = (Interaction(model="mean_field", boundary=boundary) for boundary in ("free", "periodic"))
 SECTION = {**ASPERITIES, "count": 400, "radius": "50 um"}
 PATH = np.linspace(3e-6, -1e-6, 30)
 
@@ -110,7 +110,7 @@ def test_the_force_is_that_of_independent_asperities_at_the_shifted_separation(b
     curve = solved(asperities, {"model": "mean_field", "boundary": boundary}, variables=names)
     distance = float(asperities.attrs["exclusion_distance"])
     sides = asperities.attrs["patch_x"], asperities.attrs["patch_y"]
-    c = coupling_of(Interaction("mean_field", boundary), E, sides, distance)  # type: ignore[arg-type]
+    c = coupling_of(Interaction(model="mean_field", boundary=boundary), E, sides, distance)  # type: ignore[arg-type]
     assert (c > 0.0) == (boundary == "free")
     radius, height = 5e-5, asperities.height.to_numpy()
 

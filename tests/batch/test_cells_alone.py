@@ -18,7 +18,7 @@ from roughmdr.scene.json_schema import scene_schema
 from roughmdr.scene.keys import key_readers, set_key
 from roughmdr.scene.separation import Separation
 from roughmdr.scene.sweep import may_be_swept
-from roughmdr.schema.quantities import Section
+from roughmdr.schema.section import Section
 from roughmdr.shapes import SHAPES
 from roughmdr.storage.labelled import Array, Labelled
 

@@ -58,7 +58,7 @@ def follow(
     ensemble: Ensemble, units: Units, h: object, *, order: int = 1, boundary: Boundary = "free", names: str = ""
 ) -> Adhering:
     """Return the contacts along separations [d0]."""
-    asked = Interaction(boundary=boundary, order=order)
+    asked = Interaction(model="pairwise", boundary=boundary, order=order)
     separation = np.array(h, dtype=np.float64) * units.d0
     return solve_path(ensemble, separation, units.modulus, units.work, asked, set(names.split()))
 

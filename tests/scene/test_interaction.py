@@ -24,14 +24,14 @@ def coupled(interaction: dict[str, Any] | None = None, **changes: Any) -> dict[s
 
 
 def test_defaults_and_choices() -> None:
-    assert read(scene()).interaction_model is None
-    assert read(coupled()).interaction_model == Interaction() == Interaction.from_argument("pairwise")
+    assert read(scene()).interaction is None
+    assert read(coupled()).interaction == Interaction(model="pairwise") == Interaction.from_argument("pairwise")
     asked = {"model": "pairwise", "boundary": "free", "order": 1, "error": 1e-4}
-    assert read(coupled(asked)).interaction_model == Interaction.from_argument(asked)
+    assert read(coupled(asked)).interaction == Interaction.from_argument(asked)
     grid = {"model": "pairwise", "beyond": "boundary_elements"}
-    assert read(coupled(grid)).interaction_model == Interaction.from_argument(grid)
-    assert read(coupled({"model": "mean_field", "boundary": "free"})).interaction_model == Interaction(
-        "mean_field", "free"
+    assert read(coupled(grid)).interaction == Interaction.from_argument(grid)
+    assert read(coupled({"model": "mean_field", "boundary": "free"})).interaction == Interaction(
+        model="mean_field", boundary="free"
     )
     without = coupled(adhesion={"model": "jkr", "work": 0.0})
     assert read(without).needs_positions
@@ -76,6 +76,25 @@ def test_what_does_not_go_together_is_refused(changes: dict[str, Any], says: str
     with pytest.raises(rm.SceneError) as caught:
         read(coupled(**changes))
     assert says in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("interaction", "says"),
+    [
+        (3, "interaction is 3; it must be a model, or a table of model, boundary, order, error, beyond"),
+        ("pairs", "interaction.model = 'pairs': not available; did you mean 'pairwise'?"),
+        ({"oder": 1, "error": 1}, "interaction.oder: unknown key; did you mean 'order'?"),
+        ({"oder": 1, "error": 1}, "interaction.error = 1: must be at most 0.01"),
+        ({**MEAN_FIELD, "order": 1}, 'interaction.order = 1: goes with model = "pairwise" only'),
+    ],
+)
+def test_an_argument_is_read_as_the_section(interaction: Any, says: str) -> None:
+    with pytest.raises(rm.RoughmdrError) as caught:
+        Interaction.from_argument(interaction)
+    assert says in str(caught.value)
+    asked = Interaction.from_argument({"order": np.int64(1), "error": np.float32(1e-4)})
+    assert asked is not None
+    assert (asked.model, asked.order) == ("pairwise", 1)
 
 
 def test_a_mean_field_goes_with_the_expected_law_and_pairs_with_stratified_draws() -> None:

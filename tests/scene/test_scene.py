@@ -1,6 +1,7 @@
 """Scenes: read with units and defaults; every fault found at once, by file, line, key, value and what is allowed."""
 
 import copy
+import pickle
 from pathlib import Path
 from typing import Any
 
@@ -42,6 +43,21 @@ def test_defaults(tmp_path: Path) -> None:
     assert (plain.seed, plain.work, plain.batch.realizations, plain.path.unload) == (0, 0.0, 1, False)
     assert plain.output.variables == ["force", "contact_area", "contact_count", "stiffness"]
     np.testing.assert_array_equal(plain.path.values(2e-6), [2e-6, 0.0, -1e-6])
+
+
+@pytest.mark.parametrize(
+    "path",
+    [
+        {"separation": {"stop": {"pressure": "1 kPa"}, "steps": 9}},
+        {"force": {"stop": "1 uN", "steps": 9}},
+        {"pressure": {"stop": "1 Pa", "steps": 9}},
+        {"remote": {"stop": "1 sigma", "steps": 9}, "machine_stiffness": "1 kN/m"},
+    ],
+)
+def test_a_scene_is_the_same_when_it_was_pickled(path: dict[str, Any]) -> None:
+    given = read(scene(path=path, interaction={"model": "pairwise"}))
+    again = pickle.loads(pickle.dumps(given))
+    assert (again.path, again.interaction) == (given.path, given.interaction)
 
 
 def test_both_bodies_count() -> None:

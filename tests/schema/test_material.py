@@ -183,3 +183,22 @@ def test_units_are_read_wherever_a_number_is_taken() -> None:
 def test_a_wrong_unit_is_named(refused: Callable[[], Any], error: type[Exception], says: str) -> None:
     with pytest.raises(error, match=says):
         refused()
+
+
+@pytest.mark.parametrize(
+    ("given", "says"),
+    [
+        ({"effective_modulus": 0.0}, "effective_modulus is 0 Pa; it must be a finite number above 0 Pa"),
+        ({"modulus": 1e6, "poisson": 0.7}, "poisson is 0.7; it must be a number above -1 and at most 0.5"),
+        ({"modulus": 1e6, "poisson": 10**400}, "...; it must be a number above -1 and at most 0.5"),
+        ({"modulus": 1e6, "poisson": "3 kg"}, "poisson is '3 kg': has the unit 'kg', but is a plain number"),
+        (
+            {"effective_modulus": 1e6, "adhesion": "auto", "strength": 1e6, "error": 2.0},
+            "error is 2; it must be a number above 0 and at most 1",
+        ),
+    ],
+)
+def test_arguments_are_held_to_the_bounds_of_the_scene(given: dict[str, Any], says: str) -> None:
+    with pytest.raises(rm.OutOfRange) as caught:
+        rm.indent(TIP, indentation=1e-9, work=0.05, **given)
+    assert str(caught.value).endswith(says)

@@ -13,9 +13,9 @@ from roughmdr.asperity.fields.integrals import DEEP, DISPLACEMENT, PRESSURE, STE
 from roughmdr.errors import OutOfRange, RoughmdrError, warn_limits
 from roughmdr.kernels.adhesion import Adhesion, AdhesiveMaterial
 from roughmdr.numerics.arguments import Floats
-from roughmdr.schema.arguments import check_poisson, check_values
+from roughmdr.schema.arguments import check_values
 from roughmdr.schema.keywords import named_keywords
-from roughmdr.schema.material import effective_modulus_of
+from roughmdr.schema.material import POISSON, effective_modulus_of
 from roughmdr.shapes import Shape
 from roughmdr.shapes.base import check_radii
 from roughmdr.variables import FIELDS
@@ -203,7 +203,7 @@ def axis_stress(
         raise RoughmdrError(f"adhesion is {asked.model!r}; axis_stress takes adhesion='jkr' only")
     if material.get("poisson") is None:
         raise RoughmdrError("axis_stress needs the poisson of the half-space, with effective_modulus as with modulus")
-    poisson = check_poisson("poisson", material["poisson"])
+    poisson = POISSON.argument("poisson", material["poisson"])
     if material.get("effective_modulus") is not None and material.get("modulus") is None:
         del material["poisson"]
     modulus = effective_modulus_of(axis_stress, material)

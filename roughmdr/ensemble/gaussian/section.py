@@ -5,7 +5,7 @@ from functools import cached_property, partial
 from typing import Annotated, ClassVar, Literal
 
 import numpy as np
-from pydantic import BeforeValidator, ValidationInfo, field_validator, model_validator
+from pydantic import ValidationInfo, field_validator, model_validator
 
 from roughmdr.ensemble.ensemble import Ensemble
 from roughmdr.ensemble.gaussian.summit_distribution import SummitDistribution, product_of_score
@@ -14,8 +14,9 @@ from roughmdr.ensemble.patch_source import MAX_COUNT, PatchSource
 from roughmdr.ensemble.random.distribution_families import ndtri
 from roughmdr.ensemble.streams import HEIGHT, PARAMETER, make_streams
 from roughmdr.errors import RoughmdrError
-from roughmdr.schema.quantities import EntryError, Length, Quantity
-from roughmdr.spectrum import Moments, SelfAffine
+from roughmdr.schema.quantities import EntryError, Quantity
+from roughmdr.schema.section import Length
+from roughmdr.spectrum import HURST, Moments, SelfAffine
 
 _MOMENTS = ("m0", "m2", "m4")
 _WAVES = ("hurst", "long_wave", "short_wave")
@@ -51,14 +52,22 @@ class NayakAsperities(PatchSource):
     source: Literal["nayak"]
     shape: Literal["paraboloid"] = "paraboloid"
     placement: Literal["random", "hard_core", "square", "hexagonal"] = "hard_core"
-    m0: Annotated[float, BeforeValidator(Quantity("m2", above=0.0))] | None = None
-    m2: Annotated[float, BeforeValidator(Quantity("1", above=0.0))] | None = None
-    m4: Annotated[float, BeforeValidator(Quantity("m-2", above=0.0))] | None = None
-    hurst: Annotated[float, BeforeValidator(Quantity("1", at_least=0.0, at_most=1.0))] | None = None
+    m0: Annotated[float, Quantity("m2", above=0.0)] | None = None
+    """Mean square of the heights of a profile of the surface."""
+    m2: Annotated[float, Quantity("1", above=0.0)] | None = None
+    """Mean square of its slopes."""
+    m4: Annotated[float, Quantity("m-2", above=0.0)] | None = None
+    """Mean square of its curvatures."""
+    hurst: Annotated[float, HURST] | None = None
+    """Hurst exponent of the spectrum."""
     long_wave: Length | None = None
+    """Longest wave of the spectrum."""
     short_wave: Length | None = None
+    """Shortest wave of the spectrum."""
     rms_height: Length | None = None
-    rms_slope: Annotated[float, BeforeValidator(Quantity("1", above=0.0))] | None = None
+    """Root mean square of the heights of the surface."""
+    rms_slope: Annotated[float, Quantity("1", above=0.0)] | None = None
+    """Root mean square of its slopes, in place of rms_height."""
 
     @field_validator(*_WAVES, *_AMPLITUDES)
     @classmethod

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from roughmdr.errors import RoughmdrError
 from roughmdr.schema.json_schema import JsonSchema, of_any_type
-from roughmdr.schema.quantities import Quantity
+from roughmdr.schema.quantities import Quantity, Reader
 from roughmdr.schema.units import format_quantity, unit_factor
 
 
@@ -37,7 +37,7 @@ class RawMap(NamedTuple):
     rows_along: str = "y"  # the direction of a row of numbers in the file
 
 
-class SizeReader:
+class SizeReader(Reader):
     """Reads the size of a map."""
 
     dimension = "m"

@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import Annotated, ClassVar, Literal
 
 import numpy as np
-from pydantic import BeforeValidator, StrictBool, field_validator, model_validator
+from pydantic import StrictBool, field_validator, model_validator
 
 from roughmdr.ensemble.ensemble import Ensemble
 from roughmdr.ensemble.from_file import FromFile
@@ -18,7 +18,7 @@ from roughmdr.ensemble.maps.read_map import read_map
 from roughmdr.ensemble.maps.waves import MapWaves
 from roughmdr.ensemble.maps.words import describe_map
 from roughmdr.errors import RoughmdrError, SceneError
-from roughmdr.schema.quantities import Length
+from roughmdr.schema.section import Length
 from roughmdr.schema.units import unit_factor
 
 _ROUNDING = 64 * np.finfo(float).eps  # rounding error of heights after a trend was removed, over the largest height
@@ -44,14 +44,23 @@ class SurfaceAsperities(FromFile):
 
     source: Literal["surface"]
     model: Model = "summits"
+    """"summits": a paraboloid each; "hills", for [interaction]: the profile of each hill."""
     shape: Literal["paraboloid", "mdr_table"] | None = None
-    size: Annotated[Size | None, BeforeValidator(SizeReader())] = None
+    """Shape of the asperities, which decides the other keys."""
+    size: Annotated[Size | None, SizeReader()] = None
+    """Side of the map, or both along x and y, or { across, down } the rows of its file, which does not say."""
     unit: str | None = None
+    """Unit of the heights of the map, where its file does not say."""
     channel: str | None = None
+    """Name of the map, where its file has several."""
     detrend: Trend | None = None
+    """Trend that is removed. Default: "quadratic", of periodic maps "mean"."""
     periodic: StrictBool | None = None
+    """Whether the map repeats. Default: as its file says, else false."""
     cutoff: Length | None = None
+    """Shorter waves are removed."""
     outliers: Treatment | None = None
+    """Marks of undefined points and spikes become "undefined", or are "kept". Default: they are refused."""
 
     @model_validator(mode="after")
     def _shape_of_the_model(self) -> "SurfaceAsperities":

@@ -8,7 +8,7 @@ from roughmdr.ensemble.random.distribution import Distribution
 from roughmdr.ensemble.random.distribution_families import ALIASES, Family, find_family, known_families
 from roughmdr.errors import RoughmdrError
 from roughmdr.schema.json_schema import JsonSchema, of_any_type
-from roughmdr.schema.quantities import EntryError, Quantity
+from roughmdr.schema.quantities import EntryError, Quantity, Reader
 from roughmdr.schema.units import DIMENSIONLESS, format_quantity, quantity
 from roughmdr.schema.wording import close_matches
 
@@ -24,7 +24,7 @@ def definition_of(dimension: str) -> str:
 
 
 @dataclass(frozen=True)
-class DistributionReader:
+class DistributionReader(Reader):
     """Reads a distribution: a plain quantity, or a table with ``distribution`` and its parameters.
 
     The parameters are scipy's (the family's own, loc, scale), with which the distribution is scipy's, loc = 0 by

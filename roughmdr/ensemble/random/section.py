@@ -1,13 +1,13 @@
 """source = "random": the part that the sections of all shapes have in common."""
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from functools import cached_property
 from itertools import product
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, ClassVar, Literal
 
 import numpy as np
-from pydantic import BeforeValidator, model_validator
+from pydantic import model_validator
 
 from roughmdr.ensemble.ensemble import Ensemble
 from roughmdr.ensemble.lattice import LATTICES, check_pitch, with_sites_counted
@@ -20,18 +20,21 @@ from roughmdr.ensemble.random.population_nodes import nodes_of
 from roughmdr.ensemble.streams import HEIGHT, PARAMETER, Streams, make_streams, poisson
 from roughmdr.errors import RoughmdrError
 from roughmdr.numerics.arguments import Floats
-from roughmdr.schema.quantities import EntryError, Length, Quantity, Section, WholeNumber
+from roughmdr.schema.quantities import EntryError, Quantity, WholeNumber
+from roughmdr.schema.section import Length, Section
 from roughmdr.schema.units import DIMENSIONLESS, format_quantity
 from roughmdr.shapes import SHAPES
 
-_Height = Annotated[Distribution, BeforeValidator(DistributionReader("m", mean=0.0))]
+_Height = Annotated[Distribution, DistributionReader("m", mean=0.0)]
 
 
 class Second(Section):
     """[asperities.second]: a second population, ``share`` of all asperities; keys left out are as in the first."""
 
-    share: Annotated[float, BeforeValidator(Quantity(DIMENSIONLESS, above=0.0, at_most=1.0))]
+    share: Annotated[float, Quantity(DIMENSIONLESS, above=0.0, at_most=1.0, example="0.2")]
+    """Share of all asperities."""
     height: _Height | None = None
+    """Heights of the summits above the datum plane z = 0; with a std alone their mean is 0: the second population."""
 
 
 class Correlation(Section):
@@ -41,13 +44,28 @@ class Correlation(Section):
 class RandomAsperities(PatchSource):
     """[asperities] with source = "random": ``count`` asperities, or a ``density``, on a square of side ``patch``."""
 
+    examples: ClassVar[Mapping[str, str]] = {
+        "source": '"random"',
+        "shape": '"paraboloid"',
+        "count": "2000",
+        "patch": '"1 mm"',
+        "height": '{ distribution = "normal", std = "1 um" }',
+        "radius": '"50 um"',
+    }
+
     source: Literal["random"]
-    count: Annotated[int, BeforeValidator(WholeNumber(1, MAX_COUNT))] | None = None
-    density: Annotated[float, BeforeValidator(Quantity("m-2", above=0.0))] | None = None
+    count: Annotated[int, WholeNumber(1, MAX_COUNT)] | None = None
+    """Number of asperities."""
+    density: Annotated[float, Quantity("m-2", above=0.0)] | None = None
+    """Mean number of asperities per area, in place of count: a Poisson number in each realisation."""
     pitch: Length | None = None
+    """Distance of neighbours on a lattice, in place of count: the sites on the patch are counted."""
     height: _Height
+    """Heights of the summits above the datum plane z = 0; with a std alone their mean is 0."""
     second: Second | None = None
+    """A second population; keys left out are as in the first."""
     correlation: Correlation | None = None
+    """Spearman's rank correlation of the height with one shape parameter."""
 
     @model_validator(mode="before")
     @classmethod

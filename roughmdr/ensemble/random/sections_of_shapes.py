@@ -10,25 +10,40 @@ from roughmdr.ensemble.random.distribution_reader import DistributionReader
 from roughmdr.ensemble.random.section import Correlation, RandomAsperities, Second
 from roughmdr.errors import RoughmdrError
 from roughmdr.schema.json_schema import JsonSchema
-from roughmdr.schema.quantities import EntryError, Quantity, Section
+from roughmdr.schema.quantities import EntryError, Quantity
+from roughmdr.schema.section import Section
 from roughmdr.schema.units import DIMENSIONLESS, quantity
 from roughmdr.shapes import SCENE_SHAPES, PowerSeries, Shape, SharedProfile, Tabulated
 
 _Section = TypeVar("_Section", bound=Section)
-_Rank = Annotated[float, BeforeValidator(Quantity(DIMENSIONLESS, at_least=-1.0, at_most=1.0))]
+_Rank = Annotated[float, Quantity(DIMENSIONLESS, at_least=-1.0, at_most=1.0)]
+PARAMETERS = {
+    "radius": ("Radius: of curvature at the tip, of the sphere, or of the flat punch", ""),
+    "slope": ("Slope of the flank, the tangent of its angle to the plane", "0.1"),
+    "exponent": ("Exponent n of the profile; above 1/2 with adhesion", "2.0"),
+    "coefficient": ("Coefficient c of the profile c r^n, in m^(1-n)", ""),
+    "width": ("Radius at which the profile has its rise", ""),
+    "rise": ("Height of the profile at its width", ""),
+    "flat_radius": ("Radius of the flat end", '"1 um"'),
+    "blend_radius": ("Radius at which the rounded tip meets the flank", '"1 um"'),
+    "cap_radius": ("Radius of curvature of the cap; not below radius", '"100 um"'),
+    "edge_radius": ("Radius of curvature of the edge", '"1 um"'),
+}
+"""The meaning of each parameter of the shapes, and an example for messages on what is missing."""
 TERMS: JsonSchema = {
     "type": "object",
     "minProperties": 1,
     "propertyNames": {"pattern": r"^\s*[-+]?[\d._]+(?:[eE][-+]?\d+)?\s*$"},
     "additionalProperties": Quantity(DIMENSIONLESS).json_schema(),
 }
+_TERMS = '{ "2" = 1e4, "4" = 1e14 }'
 LENGTHS: JsonSchema = {"type": "array", "items": Quantity("m").json_schema()}
 
 
 def read_terms(value: object) -> dict[str, float]:
     """Read the terms of a power series, { "exponent" = coefficient }."""
     if not isinstance(value, dict) or not value:
-        raise RoughmdrError('must be a table of exponents and coefficients, as { "2" = 1e4, "4" = 1e14 }')
+        raise RoughmdrError(f"must be a table of exponents and coefficients, as {_TERMS}")
     terms = {}
     for exponent, coefficient in value.items():
         try:
@@ -51,11 +66,15 @@ def read_lengths(value: object) -> list[float]:
     return [quantity(entry, "m") for entry in value]
 
 
+_Lengths = Annotated[list[float], BeforeValidator(read_lengths), WithJsonSchema(LENGTHS)]
+
+
 class RandomPowerSeries(RandomAsperities):
     """Asperities with one power series as their common profile."""
 
     shape: Literal["power_series"]
-    terms: Annotated[dict[str, float], BeforeValidator(read_terms), WithJsonSchema(TERMS)]
+    terms: Annotated[dict[str, float], BeforeValidator(read_terms), WithJsonSchema(TERMS), Field(examples=[_TERMS])]
+    """Terms of the power series, { "exponent" = coefficient }."""
 
     @cached_property
     def shared_profile(self) -> SharedProfile:
@@ -67,8 +86,10 @@ class RandomTabulated(RandomAsperities):
     """Asperities with one measured profile."""
 
     shape: Literal["tabulated"]
-    r: Annotated[list[float], BeforeValidator(read_lengths), WithJsonSchema(LENGTHS)]
-    f: Annotated[list[float], BeforeValidator(read_lengths), WithJsonSchema(LENGTHS)]
+    r: Annotated[_Lengths, Field(examples=['[0, "1 um", "2 um"]'])]
+    """Radii of the tabulated profile, rising from 0."""
+    f: Annotated[_Lengths, Field(examples=['[0, "10 nm", "50 nm"]'])]
+    """Heights of the tabulated profile at r, from 0."""
 
     @field_validator("f")
     @classmethod
@@ -93,17 +114,21 @@ def _published(name: str, base: type[_Section], keys: dict[str, Any]) -> type[_S
 def _section(shape: type[Shape]) -> type[RandomAsperities]:
     """Return the section of one shape, with a key for each of its parameters."""
     required = set.intersection(*map(set, shape.parameter_sets))
-    readers = {name: BeforeValidator(DistributionReader(unit, positive=True)) for name, unit in shape.units.items()}
-    optional: dict[str, Any] = {
-        name: (Annotated[Distribution, reader] | None, None) for name, reader in readers.items()
-    }
-    keys = optional | {name: (Annotated[Distribution, readers[name]], ...) for name in required}
-    second = _published(f"Second{shape.__name__}", Second, optional)
-    ranks = dict.fromkeys(shape.units, (_Rank | None, None))
+    readers = {name: DistributionReader(unit, positive=True) for name, unit in shape.units.items()}
+
+    def keys(annotations: dict[str, Any], of: str) -> dict[str, Any]:
+        return {name: (kind, Field(None, description=PARAMETERS[name][0] + of)) for name, kind in annotations.items()}
+
+    optional = {name: Annotated[Distribution, reader] | None for name, reader in readers.items()}
+    second = _published(f"Second{shape.__name__}", Second, keys(optional, ": the second population"))
+    ranks = keys(dict.fromkeys(readers, _Rank | None), ": its correlation with the height")
     correlation = _published(f"Correlation{shape.__name__}", Correlation, ranks)
-    keys |= {"shape": (Literal[shape.name], ...), "second": (second | None, None)}
-    keys |= {"correlation": (correlation | None, None)}
-    return _published(f"Random{shape.__name__}", RandomAsperities, keys)
+    own = keys(optional, "")
+    for name in required:
+        meaning, example = PARAMETERS[name]
+        own[name] = Annotated[Distribution, readers[name]], Field(description=meaning, examples=[example])
+    own |= {"shape": (Literal[shape.name], ...), "second": (second | None, None)}
+    return _published(f"Random{shape.__name__}", RandomAsperities, own | {"correlation": (correlation | None, None)})
 
 
 if TYPE_CHECKING:

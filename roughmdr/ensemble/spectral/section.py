@@ -6,19 +6,20 @@ from functools import cached_property
 from typing import Annotated, ClassVar, Literal
 
 import numpy as np
-from pydantic import BeforeValidator, ValidationInfo, field_validator, model_validator
+from pydantic import ValidationInfo, field_validator, model_validator
 
 from roughmdr.ensemble.ensemble import Ensemble
 from roughmdr.ensemble.gaussian.summit_distribution import SummitDistribution
 from roughmdr.ensemble.maps.found import Model, asperities_on, check_shape
 from roughmdr.ensemble.maps.height_map import HeightMap
 from roughmdr.ensemble.random.distribution_families import ndtri
-from roughmdr.ensemble.source import Source
+from roughmdr.ensemble.source import Patch, Source
 from roughmdr.ensemble.spectral.surface import Waves
 from roughmdr.ensemble.streams import WAVES, make_streams
 from roughmdr.errors import OutOfRange, RoughmdrError
-from roughmdr.schema.quantities import EntryError, Length, Quantity
-from roughmdr.spectrum import Moments, SelfAffine
+from roughmdr.schema.quantities import EntryError, Quantity
+from roughmdr.schema.section import Length
+from roughmdr.spectrum import HURST, Moments, SelfAffine
 
 _LARGEST_MAP = 8192  # most points along a side
 _MARGIN = 1.02  # least number of points over twice the waves along a side
@@ -38,15 +39,25 @@ class SpectrumAsperities(Source):
 
     source: Literal["spectrum"]
     model: Model = "hills"
+    """"summits": a paraboloid each; "hills", for [interaction]: the profile of each hill."""
     shape: Literal["paraboloid", "mdr_table"] | None = None
-    patch: Annotated[float, BeforeValidator(Quantity("m", at_least=1e-150, at_most=1e150))]
-    hurst: Annotated[float, BeforeValidator(Quantity("1", at_least=0.0, at_most=1.0))]
+    """Shape of the asperities, which decides the other keys."""
+    patch: Patch
+    """Side of the square nominal area, or of the square of the same area where a lattice has an oblong one."""
+    hurst: Annotated[float, HURST]
+    """Hurst exponent of the spectrum."""
     long_wave: Length
+    """Longest wave of the spectrum."""
     short_wave: Length
+    """Shortest wave of the spectrum."""
     rms_height: Length | None = None
-    rms_slope: Annotated[float, BeforeValidator(Quantity("1", above=0.0))] | None = None
-    anisotropy: Annotated[float, BeforeValidator(Quantity("1", at_least=1.0, at_most=100.0))] = 1.0
-    points: Annotated[float, BeforeValidator(Quantity("1", at_least=2.5, at_most=64.0))] = 6.0
+    """Root mean square of the heights of the surface."""
+    rms_slope: Annotated[float, Quantity("1", above=0.0)] | None = None
+    """Root mean square of its slopes, in place of rms_height."""
+    anisotropy: Annotated[float, Quantity("1", at_least=1.0, at_most=100.0)] = 1.0
+    """Stretch of lengths along x over that along y."""
+    points: Annotated[float, Quantity("1", at_least=2.5, at_most=64.0)] = 6.0
+    """Points of a map for a shortest wave."""
 
     @field_validator("short_wave")
     @classmethod

@@ -49,4 +49,4 @@ def prepare(shape: str) -> None:
     example = kind(**kind.example())
     place = np.array([0.0, 1.0, 3.0])
     ensemble = Ensemble.alike(example, np.zeros(3), {"x": place, "y": place}, 10.0)
-    solve_path(ensemble, np.zeros(1), 1.0, 1e-6, Interaction(), set())
+    solve_path(ensemble, np.zeros(1), 1.0, 1e-6, Interaction(model="pairwise"), set())
