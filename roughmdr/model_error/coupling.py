@@ -20,8 +20,8 @@ _SUMMITS = 1.3
 """Error of summits, over the root of the contact fraction: flanks of a continuous surface are no paraboloids."""
 
 _HILLS = 0.06
-"""Error of the hills of an isotropic map, from 0.3 to 20 % contact (``pipelines/study.py hills``); it grows as the root of
-the ratio of the slopes across and along the waves."""
+"""Error of the hills of an isotropic map, from 0.3 to 20 % contact (``pipelines/study.py hills``); it grows as the root
+of the ratio of the slopes across and along the waves."""
 
 _HELD = 0.13
 """Error of the force of adhesive hills in contact, over their pull-off forces: that of one paraboloid at Tabor number 2
