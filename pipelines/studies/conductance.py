@@ -1,5 +1,9 @@
-"""Surfaces whose conductance is compared: asperities on a plane, and maps with their hills and summits."""
+"""Conductance radii of asperities and of boundary elements, at given separation and under given load.
 
+Surfaces are asperities on a plane, and maps with their hills and summits.
+"""
+
+import contextlib
 import warnings
 from concurrent.futures import ProcessPoolExecutor
 from multiprocessing import get_context
@@ -12,16 +16,42 @@ import roughmdr as rm
 from roughmdr.elements.half_space import BoundaryElements
 from roughmdr.ensemble.maps.summits import find_summits
 from roughmdr.numerics.arguments import Floats
+from studies.comparison import PAIRS, in_cases, law_of, median_and_largest, panels
 from studies.hills.maps import SIDE, MapCase, hills_of, square
-from studies.study import Study, named, table
+from studies.study import Study, table
 from studies.versus_bem.ensembles import SIZE, Case
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-PAIRS: dict[str, Any] = {f"order {order}": {"model": "pairwise", "order": order} for order in (1, 2)}
-MODELS: dict[str, Any] = {"independent": None, "mean field": "mean_field", **PAIRS}
+COUPLED = {f"order {order}": pairs for order, pairs in PAIRS.items()}
+MODELS: dict[str, Any] = {"independent": None, "mean field": "mean_field", **COUPLED}
 _MAP_POINTS = 16  # of a map a shortest wave
+FRACTIONS = np.array([0.001, 0.003, 0.01, 0.03, 0.06, 0.1])
+"""Contact fractions by boundary elements, about."""
+_SEARCHED, _COARSER = 16, 4  # separations at which these are looked for, on a grid so much coarser
+_DIFFERENCE = 0.02  # of the separation, over the depth of the flat below the highest summit
+_WORKERS = 2
+_LAW = ("conductance_radius", "contact_fraction", "conductance_error", "overlap_fraction")
+_ELEMENTS = {
+    "conductance_bem": ("conductance radius over the side, by boundary elements", "1"),
+    "conductance_coarse": ("conductance radius with half as many points a side", "1"),
+    "contact_fraction_bem": ("contact fraction by boundary elements", "1"),
+}
+_MODELS = {
+    "conductance": ("conductance radius over the side, at the separation", "1"),
+    "contact_fraction": ("summed contact area over nominal area there", "1"),
+    "stated": ("stated error of the conductance there", "1"),
+    "overlap": ("share of contacts that overlap; in pairs of the force", "1"),
+    "conductance_under_load": ("conductance radius over the side, under the load of the boundary elements", "1"),
+    "stated_under_load": ("stated error of the conductance there", "1"),
+}
+GROUPS = ("random", "separated", "hills", "summits")
+_COLOURS = {"independent": "0.6", "mean field": "#8a5fb0", "order 1": "#1b6ca8", "order 2": "#c8553d"}
+_GRID, _UNKNOWN = 0.5, 5e-3
+"""Error of boundary elements over what every other point of their grid changes, of the first to the second order; at
+least that of a stiffness by differences, as cells touch one by one.
+"""
 
 
 class Surface(NamedTuple):
@@ -38,7 +68,7 @@ class Surface(NamedTuple):
     @property
     def models(self) -> dict[str, Any]:
         """Interactions of the asperities, by their names; hills need pairs."""
-        return PAIRS if self.group == "hills" else MODELS
+        return COUPLED if self.group == "hills" else MODELS
 
 
 def of_asperities(case: Case) -> list[Surface]:
@@ -81,15 +111,6 @@ def unit_height(surface: Surface) -> Floats:
     return np.asarray(surface.height / surface.side)
 
 
-FRACTIONS = np.array([0.001, 0.003, 0.01, 0.03, 0.06, 0.1])
-"""Contact fractions by boundary elements, about."""
-_SEARCHED, _COARSER = 16, 4  # separations at which these are looked for, on a grid so much coarser
-_DIFFERENCE = 0.02  # of the separation, over the depth of the flat below the highest summit
-_WORKERS = 2
-_ASKED = ("force", "conductance_radius", "contact_fraction")
-_LAW = (*_ASKED, "conductance_error", "overlap_fraction")
-
-
 class Elements(NamedTuple):
     """Boundary elements at one separation; E* and the side are 1."""
 
@@ -120,94 +141,53 @@ def separations(height: Floats) -> Floats:
     return np.asarray(found)
 
 
-def law_of(surface: Surface, interaction: Any, **control: Floats) -> dict[str, Floats]:
-    """Return the law of the asperities over the side, NaN where they have none."""
+def numbers_of(surface: Surface, interaction: Any, control: str, values: Floats) -> dict[str, Floats]:
+    """Return the law of the asperities over the side at given separations or forces; NaN where they have none."""
     found = {name: np.full(FRACTIONS.size, np.nan) for name in _LAW}
-    scale = {"separation": surface.side, "force": surface.side**2}
-    ((name, values),) = control.items()
+    scale = {"separation": surface.side, "force": surface.side**2}[control]
     for i in np.flatnonzero(np.isfinite(values)):
-        given: dict[str, Any] = {name: [float(values[i]) * scale[name]]}
-        try:
-            law = rm.load_separation(
-                surface.ensemble, effective_modulus=1.0, interaction=interaction, variables=_ASKED, **given
-            )
-        except rm.RoughmdrError:
-            continue
-        found["force"][i] = float(law.force[0]) / surface.side**2
-        found["conductance_radius"][i] = float(law.conductance_radius[0]) / surface.side
-        found["contact_fraction"][i] = float(law.contact_fraction[0])
-        for each in _LAW[len(_ASKED) :]:
-            found[each][i] = float(law[each])
-    return found
+        given: dict[str, Any] = {control: [float(values[i]) * scale], "interaction": interaction}
+        with contextlib.suppress(rm.RoughmdrError):
+            law = law_of(surface.ensemble, effective_modulus=1.0, variables=("force", *_LAW[:2]), **given)
+            for name in _LAW:
+                found[name][i] = float(law[name].item())
+    return found | {"conductance_radius": found["conductance_radius"] / surface.side}
 
 
-def compare(case: Case | MapCase) -> list[xr.Dataset]:
-    """Return the numbers of the surfaces of a case."""
+def compare(case: Case | MapCase) -> list[dict[str, Any]]:
+    """Return the numbers of the surfaces of a case; hills and summits are of one map."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", rm.LimitWarning)
-        compared = list[xr.Dataset]()
-        solved: tuple[Floats, Floats] | None = None
-        for surface in surfaces(case):
-            height = unit_height(surface)
-            if solved is None:  # hills and summits are of one map
-                along = separations(height)
-                grids = [BoundaryElements(each, np.ones(2)) for each in (height, height[::2, ::2])]
-                solved = along, np.array([[press(grid, h) for h in along.tolist()] for grid in grids])
-            compared.append(_numbers(surface, *solved))
-    return compared
+        found = surfaces(case)
+    height = unit_height(found[0])
+    along = separations(height)
+    grids = [BoundaryElements(each, np.ones(2)) for each in (height, height[::2, ::2])]
+    fine, coarse = np.array([[press(grid, h) for h in along.tolist()] for grid in grids])
+    elements = {"conductance_bem": fine[:, 1], "conductance_coarse": coarse[:, 1], "contact_fraction_bem": fine[:, 2]}
+    return [{"group": each.group, **elements, **_by_models(each, along, fine[:, 0])} for each in found]
 
 
-def _numbers(surface: Surface, along: Floats, solved: Floats) -> xr.Dataset:
-    fine, coarse = solved
-    over, laws = ("model", "step"), dict[str, list[Floats]]()
+def _by_models(surface: Surface, along: Floats, force: Floats) -> dict[str, list[Floats]]:
+    """Return the numbers of ``_MODELS`` by each model; NaN of those that are not asked for."""
+    nothing = dict.fromkeys(_LAW, np.full(FRACTIONS.size, np.nan))
+    laws: dict[str, list[Floats]] = {name: [] for name in _MODELS}
     for name in MODELS:
-        asked = name in surface.models
-        nothing = {each: np.full(FRACTIONS.size, np.nan) for each in _LAW}
-        at = law_of(surface, surface.models[name], separation=along) if asked else nothing
-        under = law_of(surface, surface.models[name], force=fine[:, 0]) if asked else nothing
-        numbers = {
-            "conductance": at["conductance_radius"],
-            "contact_fraction": at["contact_fraction"],
-            "stated": at["conductance_error"],
-            "overlap": at["overlap_fraction"],
-            "conductance_under_load": under["conductance_radius"],
-            "stated_under_load": under["conductance_error"],
-        }
-        for key, values in numbers.items():
-            laws.setdefault(key, []).append(values)
-    return xr.Dataset(
-        {
-            "conductance_bem": ("step", fine[:, 1], named("conductance radius over the side, by boundary elements")),
-            "conductance_coarse": ("step", coarse[:, 1], named("the same with half as many points a side")),
-            "contact_fraction_bem": ("step", fine[:, 2], named("contact fraction by boundary elements")),
-            "conductance": (over, laws["conductance"], named("conductance radius over the side, at the separation")),
-            "contact_fraction": (over, laws["contact_fraction"], named("summed contact area over nominal area there")),
-            "stated": (over, laws["stated"], named("stated error of the conductance there")),
-            "overlap": (over, laws["overlap"], named("share of contacts that overlap; in pairs of the force")),
-            "conductance_under_load": (
-                over,
-                laws["conductance_under_load"],
-                named("conductance radius over the side, under the load of the boundary elements"),
-            ),
-            "stated_under_load": (over, laws["stated_under_load"], named("stated error of the conductance there")),
-        },
-        {"model": list(MODELS), "group": surface.group},
-    )
+        at, under = (
+            numbers_of(surface, surface.models[name], control, values) if name in surface.models else nothing
+            for control, values in (("separation", along), ("force", force))
+        )
+        numbers = (*(at[key] for key in _LAW), under["conductance_radius"], under["conductance_error"])
+        for key, values in zip(_MODELS, numbers, strict=True):
+            laws[key].append(values)
+    return laws
 
 
 def measure(quick: bool) -> xr.Dataset:
     """Compare all surfaces, or a few of them on coarse grids."""
     with ProcessPoolExecutor(_WORKERS, mp_context=get_context("spawn")) as pool:
-        parts = [each for found in pool.map(compare, QUICK if quick else CASES) for each in found]
-    return xr.concat(parts, "case")
-
-
-GROUPS = ("random", "separated", "hills", "summits")
-_COLOURS = {"independent": "0.6", "mean field": "#8a5fb0", "order 1": "#1b6ca8", "order 2": "#c8553d"}
-_GRID, _UNKNOWN = 0.5, 5e-3
-"""Error of boundary elements over what every other point of their grid changes, of the first to the second order; at
-least that of a stiffness by differences, as cells touch one by one.
-"""
+        found = [each for part in pool.map(compare, QUICK if quick else CASES) for each in part]
+    numbers = in_cases(_ELEMENTS, found, "case", "step") | in_cases(_MODELS, found, "case", "model", "step")
+    return xr.Dataset(numbers, {"model": list(MODELS), "group": ("case", [each["group"] for each in found])})
 
 
 def errors(result: xr.Dataset, name: str = "conductance") -> xr.DataArray:
@@ -230,13 +210,10 @@ def bounded(result: xr.Dataset, under_load: bool = False) -> xr.DataArray:
 
 def draw(result: xr.Dataset) -> "Figure":
     """Draw the error at given separation and under given load over the contact fraction."""
-    from matplotlib.figure import Figure
-
-    figure = Figure(figsize=(14, 4.8), layout="constrained")
-    panels = dict(zip(("conductance", "conductance_under_load"), figure.subplots(1, 2, sharey=True), strict=True))
-    titles = ("At given separation", "Under given load")
+    figure, (left, right) = panels(14, 4.8, 2)
     marks = dict(zip(GROUPS, "os^x", strict=True))
-    for title, (name, panel) in zip(titles, panels.items(), strict=True):
+    for panel, name in ((left, "conductance"), (right, "conductance_under_load")):
+        title = "At given separation" if panel is left else "Under given load"
         error = abs(errors(result, name))
         for model, colour in _COLOURS.items():
             for group, mark in marks.items():
@@ -248,14 +225,8 @@ def draw(result: xr.Dataset) -> "Figure":
         panel.set(
             xlabel="contact fraction", ylabel="error of the conductance (relative)", title=title, ylim=(1e-4, 1.0)
         )
-        panel.grid(color="0.92")
     figure.legend(loc="outside right center", fontsize=8)
     return figure
-
-
-def _percent(values: Floats) -> str:
-    known = np.abs(values[np.isfinite(values)])
-    return f"{100.0 * np.median(known):.2g} % ({100.0 * known.max():.2g})" if known.size else ""
 
 
 def report(result: xr.Dataset) -> str:
@@ -271,12 +242,12 @@ def report(result: xr.Dataset) -> str:
             if not np.isfinite(one["conductance"]).any():
                 continue
             for name, where in (("conductance", "separation"), ("conductance_under_load", "load")):
-                cells = [_percent(errors(one, name).isel(step=i).to_numpy()) for i in range(FRACTIONS.size)]
+                cells = [median_and_largest(errors(one, name).isel(step=i).to_numpy()) for i in range(FRACTIONS.size)]
                 rows.append([group, str(model), where, *cells])
             shares = [float(bounded(own, under_load).sel(model=model).mean()) for under_load in (False, True)]
             held.append([group, str(model), *(f"{100.0 * share:.0f} %" for share in shares)])
     head = ["surfaces", "model", "at given", *(f"{100.0 * each:g} %" for each in FRACTIONS)]
-    grid = _percent(grid_errors(result).to_numpy())
+    grid = median_and_largest(grid_errors(result).to_numpy())
     return f"""Errors of the conductance by contact fraction, median of the magnitude (largest):
 
 {table(head, rows)}
@@ -290,10 +261,6 @@ The grids of boundary elements are right to about {grid}.
 
 
 STUDY = Study(
-    "conductance",
-    "Conductance against boundary elements",
-    measure,
-    draw,
-    report,
+    "conductance", "Conductance against boundary elements", measure, draw, report,
     f"{len(QUICK)} cases, mostly smaller ones on coarser grids, in place of {len(CASES)}",
-)
+)  # fmt: skip

@@ -21,6 +21,8 @@ REALIZATIONS, QUICK = 64, 4
 _SIDE, _LONG, _SHORT = 1e-4, 5e-5, 6e-6
 _SLOPE = 1e-2  # small: nothing depends on it
 _PAIRS = {"model": "pairwise"}
+_COLOURS = dict(zip(METHODS, ("0.55", "#56b4e9", "#0072b2", "#d55e00", "k"), strict=True))
+_MARKERS = dict(zip(METHODS, "voDs ", strict=True))
 
 
 def surface(hurst: float) -> dict[str, Any]:
@@ -84,10 +86,6 @@ def measure(quick: bool) -> xr.Dataset:
     )
 
 
-_COLOURS = dict(zip(METHODS, ("0.55", "#56b4e9", "#0072b2", "#d55e00", "k"), strict=True))
-_MARKERS = dict(zip(METHODS, "voDs ", strict=True))
-
-
 def means(result: xr.Dataset) -> tuple[xr.DataArray, xr.DataArray]:
     """Return the mean forces over that of boundary elements less 1, and their standard errors.
 
@@ -149,10 +147,6 @@ def draw(result: xr.Dataset) -> "Figure":
 
 
 STUDY = Study(
-    "spectrum",
-    "Sources nayak and spectrum against boundary elements",
-    measure,
-    draw,
-    report,
+    "spectrum", "Sources nayak and spectrum against boundary elements", measure, draw, report,
     f"{QUICK} of {REALIZATIONS} realisations",
-)
+)  # fmt: skip

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 import xarray as xr
 from forms import large
-from studies.stability import STUDY
+from studies.stability import FULL, STUDY, draw
 from studies.stability.cases import AXES, Case, design
 from studies.stability.judge import (
     CONTROLS,
@@ -20,8 +20,6 @@ from studies.stability.judge import (
     on_results,
     verdicts,
 )
-from studies.stability.measure import FULL
-from studies.stability.report import draw
 
 import roughmdr as rm
 

@@ -1,6 +1,5 @@
 """Crowded asperities that feel each other: every step has an equilibrium within the stated error, or is marked."""
 
-import warnings
 from collections.abc import Iterator
 from itertools import product
 from typing import NamedTuple
@@ -8,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
-import roughmdr as rm
+from studies.comparison import PAIRS, law_of
 from studies.versus_bem.ensembles import MODULUS, Case, separations
 
 SHAPES = ("paraboloid", "cone", "quartic")
@@ -62,18 +61,11 @@ def judge(crowd: Crowd) -> Steps:
     ensemble = crowd.generate()
     along = separations(ensemble, _FRACTIONS)
     along = along[np.isfinite(along)]
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", rm.LimitWarning)
-        found, tight = (
-            rm.load_separation(
-                ensemble,
-                separation=along,
-                effective_modulus=MODULUS,
-                variables="force",
-                interaction={"model": "pairwise", "error": error},
-            )
-            for error in (1e-6, _TIGHT)
-        )
+    found, tight = (
+        law_of(ensemble, separation=along, effective_modulus=MODULUS, variables="force",
+               interaction={**PAIRS[2], "error": error})
+        for error in (1e-6, _TIGHT)
+    )  # fmt: skip
     force, exact = found["force"].to_numpy(), tight["force"].to_numpy()
     solved = np.isfinite(force) & np.isfinite(exact)
     off = float(np.abs(force - exact)[solved].max(initial=0.0) / np.abs(exact[solved]).max(initial=1e-300))
