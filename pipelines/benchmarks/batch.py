@@ -126,10 +126,6 @@ def report(result: xr.Dataset) -> str:
 
 
 STUDY = Study(
-    "batch",
-    "What the batch engine costs",
-    measure,
-    draw,
-    report,
+    "batch", "What the batch engine costs", measure, draw, report,
     "few cells, tasks, asperities and realisations, each timed once",
-)
+)  # fmt: skip

@@ -183,10 +183,6 @@ def report(result: xr.Dataset) -> str:
 
 
 STUDY = Study(
-    "scaling",
-    "What the sum costs",
-    measure,
-    draw,
-    report,
+    "scaling", "What the sum costs", measure, draw, report,
     f"up to {ASPERITIES[True]} of {ASPERITIES[False]} asperities, each timed once",
-)
+)  # fmt: skip

@@ -124,11 +124,7 @@ def report(result: xr.Dataset) -> str:
 
 
 STUDY = Study(
-    "adhesion_range",
-    "Adhesion of finite range",
-    measure,
-    draw,
-    report,
+    "adhesion_range", "Adhesion of finite range", measure, draw, report,
     f"{TABOR_NUMBERS[True]} of {TABOR_NUMBERS[False]} Tabor numbers, "
     f"{ASPERITIES[True]} of {ASPERITIES[False]} asperities",
-)
+)  # fmt: skip

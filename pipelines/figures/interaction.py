@@ -92,10 +92,6 @@ def report(result: xr.Dataset) -> str:
 
 
 STUDY = Study(
-    "interaction",
-    "Asperities that feel each other",
-    measure,
-    draw,
-    report,
+    "interaction", "Asperities that feel each other", measure, draw, report,
     f"{ASPERITIES[True]} of {ASPERITIES[False]} asperities, a quarter of the steps",
-)
+)  # fmt: skip

@@ -239,10 +239,6 @@ PICTURES: dict[str, Draw] = {"springs_row": draw_row, "springs_error": draw_erro
 
 
 STUDY = Study(
-    "springs",
-    "One asperity as a row of springs",
-    measure,
-    PICTURES,
-    report,
+    "springs", "One asperity as a row of springs", measure, PICTURES, report,
     f"rows of up to {max(QUICK)} of {max(COUNTS)} springs",
-)
+)  # fmt: skip

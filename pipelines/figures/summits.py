@@ -13,8 +13,7 @@ import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from oracles.gaussian_maps import gaussian_map, wave_numbers, wave_variances
-from oracles.map_summits import Series
+from oracles.gaussian_maps import Series, gaussian_map, wave_numbers, wave_variances
 from studies.study import Study, named
 
 from roughmdr.ensemble.gaussian.summit_distribution import SummitDistribution, Summits, product_density
@@ -193,10 +192,6 @@ def _draw_bias(bias: Axes, result: xr.Dataset) -> None:
 
 
 STUDY = Study(
-    "summits",
-    "Summits of Gaussian surfaces",
-    measure,
-    draw,
-    report,
+    "summits", "Summits of Gaussian surfaces", measure, draw, report,
     f"{MAPS[True]} of {MAPS[False]} maps, on coarser grids; a tenth of the drawn summits",
-)
+)  # fmt: skip

@@ -184,10 +184,6 @@ def report(result: xr.Dataset) -> str:
 
 
 STUDY = Study(
-    "accuracy",
-    "Errors asked for, and reached",
-    measure,
-    draw,
-    report,
+    "accuracy", "Errors asked for, and reached", measure, draw, report,
     f"{RUNS[True]} of {RUNS[False]} runs, drawn from {REALIZATIONS[True]} of {REALIZATIONS[False]} realisations",
-)
+)  # fmt: skip

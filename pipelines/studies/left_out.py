@@ -192,10 +192,6 @@ scene allows.
 
 
 STUDY = Study(
-    "left_out",
-    "What leaving out saves",
-    measure,
-    draw,
-    report,
+    "left_out", "What leaving out saves", measure, draw, report,
     f"{ASPERITIES[True]} of {ASPERITIES[False]} asperities, {RUNS[True]} of {RUNS[False]} realisations",
-)
+)  # fmt: skip

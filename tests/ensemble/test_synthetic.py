@@ -9,8 +9,7 @@ import numpy as np
 import pytest
 import xarray as xr
 from figures.summits import FITTED, STATISTICS, summits
-from oracles.gaussian_maps import gaussian_map, rms_slope, wave_variances
-from oracles.map_summits import Series
+from oracles.gaussian_maps import Series, gaussian_map, rms_slope, wave_variances
 
 import roughmdr as rm
 from roughmdr.spectrum import SelfAffine

@@ -25,7 +25,7 @@ BY_ELEMENTS: dict[float, dict[float, float]] = {
     0.25: {2.0: 3.6771, 1.5: 2.7408, 1.0: 1.8800, 0.5: 1.1221, 0.0: 0.5037, -0.25: 0.2638, -0.5: 0.0862},
 }
 """Force over E* tilt b^2 of a flat-ended punch, indentation over tilt b; by k over tilt/b: boundary elements
-(``oracles.free_elements``) of 128 and 256 points across, without the error of the grid to first order."""
+(``oracles.boundary_elements``) of 128 and 256 points across, without the error of the grid to first order."""
 
 
 @pytest.mark.parametrize("k", BY_ELEMENTS)

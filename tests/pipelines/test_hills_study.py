@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from carried_out import CarriedOut, carried_out
-from oracles.free_elements import FreeMap
+from oracles.boundary_elements import FreeMap
 from studies.comparison import rms
 from studies.hills import METHODS, PERSSON, STUDY, errors_of, groups, measure_maps, within
 from studies.hills.convergence import FINEST, SCALES, by_noise, by_points, by_scales

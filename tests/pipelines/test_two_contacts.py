@@ -5,8 +5,7 @@ import math
 import numpy as np
 import pytest
 from forms import large
-from oracles.boundary_elements import HeightMap
-from oracles.contact_areas import by_perimeter, label_contacts, of_half_ellipsoids
+from oracles.boundary_elements import HeightMap, by_perimeter, label_contacts, of_half_ellipsoids
 from oracles.periodic_contact import periodic
 from oracles.tilted_contact import press_tilted
 from oracles.two_contacts import Indenter, equal_pair, pair, press

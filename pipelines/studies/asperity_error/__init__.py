@@ -28,6 +28,20 @@ NEAREST = 1e-12
 _PRESSED = 1e3  # depths beyond first touch, to which some are pressed first
 _MIN_FORCE = 1e-290
 _TRIES = 50
+ASPERITIES, QUICK = 100_000, 480
+_WORKERS, _GROUP_SIZE = 2, 100
+_WEIGHT = {"tabulated": 0.2}  # of a shape, else 1: its reference is slow
+_MODELS = ("none", "JKR")
+COLUMNS = {
+    "shape": {"long_name": "shape of the asperity"},
+    "adhesive": named("with JKR adhesion"),
+    "seed": named("number of the asperity"),
+    "true_error": named("true error of the force"),
+    "stated_error": named("bound on it"),
+    "distance": named("distance to the end of the branch"),
+}
+Group = tuple[str, bool, range]
+"""Some asperities: shape, whether with adhesion, and their numbers."""
 
 
 class ForceError(NamedTuple):
@@ -170,24 +184,6 @@ def _draw(rng: Rng, kind: str, adhesive: bool) -> ForceError | None:
         height = float(rng.normal()) * abs(indentation) * power_of_ten(rng, 0.0, 3.0)
     before = [height, height - _PRESSED * subject.depth] if rng.random() < 0.3 else [height]
     return subject.force_error(height, [*(before if adhesive else []), height - indentation])
-
-
-ASPERITIES, QUICK = 100_000, 480
-_WORKERS, _GROUP_SIZE = 2, 100
-_WEIGHT = {"tabulated": 0.2}  # of a shape, else 1: its reference is slow
-_MODELS = ("none", "JKR")
-COLUMNS = {
-    "shape": {"long_name": "shape of the asperity"},
-    "adhesive": named("with JKR adhesion"),
-    "seed": named("number of the asperity"),
-    "true_error": named("true error of the force"),
-    "stated_error": named("bound on it"),
-    "distance": named("distance to the end of the branch"),
-}
-
-
-Group = tuple[str, bool, range]
-"""Some asperities: shape, whether with adhesion, and their numbers."""
 
 
 def groups(count: int) -> list[Group]:

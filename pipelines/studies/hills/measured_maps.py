@@ -9,8 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import xarray as xr
-from oracles.contact_areas import by_perimeter
-from oracles.free_elements import FreeMap
+from oracles.boundary_elements import FreeMap, by_perimeter
 
 from roughmdr.ensemble.maps.detrend import remove_trend
 from roughmdr.ensemble.maps.height_map import HeightMap

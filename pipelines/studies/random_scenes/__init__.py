@@ -32,6 +32,8 @@ FULL, QUICK = 10_000, 300
 """Scenes in all."""
 QUICK_COHESIVE = ("paraboloid", "flat_punch")  # other shapes take long to compile with adhesion of finite range
 KINDS = ("shape", "adhesion", "source", "estimator")
+_COLOURS = ("#1b6ca8", "#e0a030", "#b8bcc2")
+_LISTED = 12  # reasons in the table
 
 
 def kind_of(scene: dict[str, Any]) -> tuple[str, ...]:
@@ -80,10 +82,6 @@ def measure(quick: bool) -> xr.Dataset:
     )
 
 
-_COLOURS = ("#1b6ca8", "#e0a030", "#b8bcc2")
-_LISTED = 12  # reasons in the table
-
-
 def draw(result: xr.Dataset) -> "Figure":
     """Draw a bar of outcomes for each shape of the asperities, adhesion, source and estimator."""
     from matplotlib.figure import Figure
@@ -129,10 +127,6 @@ The most frequent of {len(reasons)} reasons to refuse a scene or a run, without 
 
 
 STUDY = Study(
-    "random_scenes",
-    "Scenes drawn at random",
-    measure,
-    draw,
-    report,
+    "random_scenes", "Scenes drawn at random", measure, draw, report,
     f"{QUICK} of {FULL} scenes; adhesion of finite range on the shapes {' and '.join(QUICK_COHESIVE)} alone",
-)
+)  # fmt: skip

@@ -14,8 +14,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
-from oracles.boundary_elements import HeightMap
-from oracles.contact_areas import by_perimeter, label_contacts, of_half_ellipsoids
+from oracles.boundary_elements import HeightMap, by_perimeter, label_contacts, of_half_ellipsoids
 
 import roughmdr as rm
 from roughmdr.model_error.interaction import ASPERITIES, SUMMITS, interaction_error

@@ -29,6 +29,9 @@ class Part(NamedTuple):
 
 
 PARTS = (Part(tip.TIPS, tip.METHODS, tip.reference), Part(surface.SURFACES, surface.METHODS, surface.reference))
+TARGETS = (0.1, 0.01, 1e-3, 1e-4)
+_MIN_ERROR = 1e-16  # lower errors are drawn here
+_COLOURS = [f"C{number}" for number in range(10)] + ["#1b1b1b", "#b8860b", "#3cb371", "#c71585", "#4169e1"]
 
 
 def measure(quick: bool) -> xr.Dataset:
@@ -74,11 +77,6 @@ def cheapest(result: xr.Dataset, scene: str, quantity: str, error: float) -> xr.
     if good_enough.size == 0:
         return None
     return result.isel(point=good_enough[np.argmin(result.seconds.to_numpy()[good_enough])])
-
-
-TARGETS = (0.1, 0.01, 1e-3, 1e-4)
-_MIN_ERROR = 1e-16  # lower errors are drawn here
-_COLOURS = [f"C{number}" for number in range(10)] + ["#1b1b1b", "#b8860b", "#3cb371", "#c71585", "#4169e1"]
 
 
 def report(result: xr.Dataset) -> str:
@@ -148,10 +146,6 @@ def draw(result: xr.Dataset) -> "Figure":
 
 
 STUDY = Study(
-    "work_precision",
-    "Error against run time",
-    measure,
-    draw,
-    report,
+    "work_precision", "Error against run time", measure, draw, report,
     "every other setting, timed once, fewer draws and runs; without the last scene of each part",
-)
+)  # fmt: skip
