@@ -18,13 +18,13 @@ from studies.study import Study, named
 import roughmdr as rm
 from benchmarks.batch import by_cell, tables
 from benchmarks.child import load_separation
-from benchmarks.laws import by_law
 from benchmarks.process import in_new_process
 from benchmarks.sums import (
     MODULUS,
     SHAPES,
     TOTALS,
     WORK,
+    by_law,
     by_the_sum,
     cost_of,
     each,
