@@ -110,7 +110,7 @@ def evaluations(case: Case, model: Literal["jkr", "dugdale"]) -> float:
     except rm.RoughmdrError:
         return math.nan
     with cProfile.Profile() as profile:
-        contact.law.state(case.distance, contact.params)
+        contact.kernels.state(case.distance, contact.params)
     name = EQUILIBRIUM[model].__name__
     return float(sum(call.callcount for call in profile.getstats() if getattr(call.code, "co_name", "") == name))
 
