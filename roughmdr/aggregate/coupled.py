@@ -67,7 +67,7 @@ class CoupledTotals(NamedTuple):
 
 
 def law_of_coupled(problem: Problem, path: LoadingPath, names: list[str]) -> LoadSeparation:
-    """Return the law of asperities that feel each other in pairs; SceneError where a variable is not to be had."""
+    """Return the law of asperities that feel each other in pairs; SceneError for a variable that is not available."""
     judged, reach = _judged(problem.ensemble, names), _reach(problem)
     return _law(problem, sum_coupled(problem, path.separation, judged, reach), path.separation, names)
 
@@ -95,7 +95,7 @@ def _reach(problem: Problem) -> float:
 
 
 def _judged(ensemble: Ensemble, names: list[str]) -> list[str]:
-    """Return the variables with what their error needs beside them; that of hills needs nothing."""
+    """Return the variables, with those that their error needs too; the error of hills needs none."""
     return names if ensemble.origin == "hills" else [*names, CROWDING]
 
 
@@ -133,7 +133,7 @@ def _law(problem: Problem, found: CoupledTotals, separation: Floats, names: list
 
 
 def sum_coupled(problem: Problem, separation: Floats, names: list[str], reach: float = 0.0) -> CoupledTotals:
-    """Return totals at separations [m], ``reach`` as ``Account``; SceneError where a variable is not had."""
+    """Return totals at separations [m], ``reach`` as ``Account``; SceneError for a variable that is not available."""
     interaction, work = problem.interaction, problem.asked_adhesion.work
     assert interaction is not None
     ensemble, effective_modulus = problem.ensemble, problem.effective_modulus
@@ -244,7 +244,7 @@ def _totals(steps: "list[Step]", ensemble: Ensemble) -> tuple[Floats, NDArray[np
 def _on_grid(
     pairwise: CoupledTotals, ensemble: Ensemble, separation: Floats, effective_modulus: float, names: list[str]
 ) -> CoupledTotals:
-    """Return the totals of the whole path by boundary elements, in place of those of contacts coupled in pairs."""
+    """Return the totals of the whole path by boundary elements, instead of by contacts coupled in pairs."""
     from roughmdr.elements.half_space import STIFFNESS_ERROR
     from roughmdr.elements.path import solve_on_grid
     from roughmdr.elements.surface import POINTS, grid_shape, surface_of_asperities

@@ -65,7 +65,7 @@ from roughmdr.numerics.summation import BLOCK, accumulate, cumulative_sum
 
 _NOT_REPRESENTABLE = -1
 _ENERGIES = {ENERGY, DISSIPATED}
-# Inlined by LLVM: what numba inlines of them is no vector code.
+# Inlined by LLVM: inlined by numba they are no vector code.
 _OF_ONE_CONTACT = {"radius_at", "force_at", "stiffness_at"}
 
 

@@ -63,8 +63,8 @@ def coupling_of(
 def exclusion_of(ensemble: Ensemble) -> float:
     """Return the radius of the empty disc [m] that stands for the neighbours which an asperity of an ensemble lacks.
 
-    It is that of its placement where the ensemble tells it, as those of ``generate`` do. Summits of a map are taken to
-    be as far apart as those that source "nayak" places. All others are taken to be placed at random, with no such disc:
+    It is that of the placement where the attributes of the ensemble have it, as from ``generate``. Summits of a map are
+    taken to be as far apart as those of source "nayak". All others are taken to be placed at random, with no such disc:
     their positions, if they have any, are for the pairwise interaction.
     """
     if "exclusion_distance" in ensemble.attrs:
@@ -83,7 +83,7 @@ def coupling_in(problem: Problem) -> float:
 
 
 class Shift(NamedTuple):
-    """Where independent asperities have the force of those under their mean field."""
+    """Separations at which independent asperities have the force of those under their mean field."""
 
     coupling: float
     """c [m/N]."""
@@ -114,7 +114,7 @@ def shift(independent: ForceAndStiffness, separation: Floats, coupling: float) -
         step = np.where(moves, np.maximum(found - force, 0.0) / slope, 0.0)
         force = force + step
         beyond = separation + coupling * force
-        moves &= step > _RTOL * force  # each by itself: what is asked for beside it changes nothing
+        moves &= step > _RTOL * force  # each by itself, so that other separations change nothing
         if not moves.any():
             return Shift(coupling, beyond, force)
     raise OutOfRange("interaction.model = 'mean_field': no equilibrium was found")
@@ -134,7 +134,8 @@ def couple(total: Floats, shift: Shift) -> None:
     """Change totals [row, step] at the separations h + c F into those of asperities under their mean field at h.
 
     With k the stiffness of independent asperities, the slope of the force is k/(1 + c k). The conductance, an error of
-    the force, or what is left of F - F0(h + c F), are as much smaller, and the surface stores c F^2/2 of the energy.
+    the force, and the residual of F - F0(h + c F) are smaller by the same factor, and the surface stores c F^2/2 of
+    the energy.
     """
     slope = 1.0 + shift.coupling * total[STIFFNESS]
     total[ERROR] = (total[ERROR] + np.abs(total[FORCE] - shift.force)) / slope

@@ -1,7 +1,7 @@
 """Where the flat on a machine stands: the first separation on a leg at which its demand has passed the machine's.
 
 On the way up the demand w h - c F (``loading.machine``) has a peak before each detachment and drops there; on the way
-down it climbs at each touch that pulls. Two bounds tell how far the flat can go before it may have passed:
+down it climbs at each touch that pulls. Two bounds limit the distance to the first passage:
 
 - up, no contact stiffens, and one that is lost has pulled before: the demand grows by less than w + c (bound of the
   stiffness here) per separation;

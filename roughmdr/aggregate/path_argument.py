@@ -1,4 +1,4 @@
-"""The path as keyword arguments of a Python function: separations of the flat, or what a machine does."""
+"""The path as keyword arguments of a Python function: separations of the flat, or controls of a machine."""
 
 from typing import TypedDict
 

@@ -1,4 +1,4 @@
-"""Problem: an ensemble, its material and its adhesion, with what follows from them computed once and kept."""
+"""Problem: an ensemble, its material and its adhesion, with numbers that follow from them, computed once and kept."""
 
 import math
 from functools import cached_property
@@ -34,7 +34,7 @@ class Problem:
         self._depths: dict[Adhesion, Floats] = {}
 
     def check_asked(self, names: list[str]) -> None:
-        """Raise SceneError where the ensemble lacks what variables or the interaction need."""
+        """Raise SceneError where the ensemble lacks data that variables or the interaction need."""
         if self.ensemble.nominal_area is None and not PER_AREA.isdisjoint(names):
             raise SceneError(f"ensemble: attribute nominal_area is missing; {', '.join(sorted(PER_AREA))} need it")
         if self.interaction is not None:

@@ -157,7 +157,7 @@ def _four(values: Floats) -> tuple[Floats, ...]:
 def _has_variance(dataset: "xr.Dataset") -> "xr.DataArray | None":
     """Return the steps at which the stiffness has a finite variance; None for all.
 
-    It has none where adhesive contacts may be at their detachment, unless they hang on something that gives way.
+    It has none where adhesive contacts may be at their detachment, unless the flat is on a spring or under a load.
     """
     import xarray as xr
 

@@ -54,7 +54,7 @@ class Contact(NamedTuple):
             raise ShapeError(f"shape is {shape!r}; it must be a shape such as Paraboloid(radius=1e-6)")
         width, rise, params = shape.nondimensional()
         kernels = choose(shape.name, adhesion, np.array([params]))
-        with np.errstate(all="ignore"):  # what overflows is refused below
+        with np.errstate(all="ignore"):  # overflow is refused below
             params = prepared(kernels, shape, effective_modulus, adhesion, FIXED_GRIPS)
             if (shape.pinned or shape.limit < adhesion.range) and adhesion.cohesive and params[COUNT] == 0.0:
                 reason = (

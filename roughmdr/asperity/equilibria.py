@@ -75,7 +75,7 @@ def equilibria(
     effective_modulus = effective_modulus_of(equilibria, material)
     taken = resolved(shape, effective_modulus, asked)
     contact = Contact.of(shape, effective_modulus, taken)
-    with np.errstate(all="ignore"):  # what overflows is refused below
+    with np.errstate(all="ignore"):  # overflow is refused below
         states = sorted([*_stable(contact, delta), *unstable(contact, delta)])
     a, c, force, stiffness, stable = np.array(states, dtype=np.float64).reshape(-1, 5).T
     results = {"contact_radius": a, "force": force, "contact_area": math.pi * a * a, "stiffness": stiffness}

@@ -134,7 +134,7 @@ def indent(
     taken = resolved(shape, effective_modulus, asked)
     contact = _contact(shape, effective_modulus, taken, method, springs)
     solve = _solver(contact, control, stiffness, approach)
-    with np.errstate(all="ignore"):  # what overflows is refused below
+    with np.errstate(all="ignore"):  # overflow is refused below
         results = {**solve(np.atleast_1d(values)), control: np.atleast_1d(values)}
         results["contact_area"] = math.pi * results["contact_radius"] * results["contact_radius"]
     for name, numbers in results.items():

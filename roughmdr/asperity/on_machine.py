@@ -22,7 +22,7 @@ from roughmdr.numerics.arguments import Floats
 _FARTHEST = 1e150  # largest ratio of the stiffnesses of machine and contact; its square is a float
 _LARGEST = 1e140  # largest state; its square is a float
 _SMALLEST = 1e-290  # least distance from the foot
-_ABOVE = 1e300  # stands for what is not representable
+_ABOVE = 1e300  # stands for numbers that are not representable
 
 
 class _Part(NamedTuple):
@@ -42,7 +42,7 @@ class OnMachine(NamedTuple):
 
     @classmethod
     def on_spring(cls, contact: Contact, machine_stiffness: float) -> "OnMachine":
-        """Return the contact on a spring [N/m]; OutOfRange where floats cannot hold what both do."""
+        """Return the contact on a spring [N/m]; OutOfRange where its numbers are not representable."""
         if not 1.0 / _FARTHEST < machine_stiffness / contact.stiffness < _FARTHEST:
             raise OutOfRange(
                 f"machine_stiffness is {machine_stiffness:g} N/m; it must be within a factor of {_FARTHEST:g} of the "

@@ -1,5 +1,5 @@
 """Boundary elements: height maps pressed into an elastic half-space on a grid, without adhesion.
 
-``surface`` is what is pressed: a height map, or asperities (``union_map``). ``half_space`` solves one separation,
+``surface`` has the pressed surface: a height map, or asperities (``union_map``). ``half_space`` solves one separation,
 ``path`` all on one grid, ``refine`` on a grid as fine as an error asks for.
 """

@@ -2,7 +2,7 @@
 
 Sources: ``random`` (distributions), ``gaussian`` (summits of a Gaussian surface), ``spectral`` (maps of one, and the
 hills or summits of these), ``maps`` (those of a height map) and ``from_file`` (a saved ensemble). ``source`` declares
-what each of them answers.
+the interface of all.
 """
 
 import operator

@@ -62,7 +62,7 @@ class Source(Section):
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """Warnings of entries that may not mean what the user thinks."""
+        """Warnings of entries that users may misunderstand."""
         return ()
 
     @property

@@ -16,7 +16,7 @@ from roughmdr.numerics.arguments import Floats
 Interval = tuple[int, ...]
 """The steps after which the contact is made or lost."""
 
-_FLAT = 1e-6  # least slope over the largest: smaller ones tell no standard error
+_FLAT = 1e-6  # least slope over the largest: smaller ones give no standard error
 _INSIDE = 1e-6  # margin at the edges of an interval, over the step
 _NEWTON, _ITERATIONS, _HALVINGS = 4, 20, 8
 _LONGEST = 1.0  # longest change of x in an iteration

@@ -25,7 +25,7 @@ from roughmdr.stages import stages_in
 _LEAST_ERROR = 1e-12  # relative error of the force of a contact
 _LONGEST_STEP = 0.01  # largest change of x in differences
 _JUMP = 0.5  # ratio of the differences to both sides of x, beyond which one of them holds a jump
-_LITTLE = 1e-5  # change of x in differences of the places of jumps
+_LITTLE = 1e-5  # change of x in differences of the positions of jumps
 _FINER, _REFINEMENTS = 64, 4  # steps that replace one, and how often, to locate a jump
 
 
@@ -211,7 +211,7 @@ class Model:
         return np.asarray(np.where(sizes.min(axis=0) < _JUMP * sizes.max(axis=0), smaller, pair.mean(axis=0)))
 
     def _stretch(self, scene: Scene) -> Floats:
-        """Return by how much the measured force stretches the spring of the machine [m]."""
+        """Return the stretch of the machine's spring by the measured force [m]."""
         area = scene.nominal_area if self.curve.quantity == "pressure" else None
         return self.curve.load * (1.0 if area is None else area) / (scene.path.machine_stiffness or np.inf)
 
@@ -229,7 +229,7 @@ class Model:
         return np.asarray(change * spring / (spring + stiffness))
 
     def _offset(self, x: Floats) -> float:
-        """Return what is added to the measured control [m]."""
+        """Return the offset that is added to the measured control [m]."""
         zero = (p.value(float(number)) for p, number in zip(self.parameters, x, strict=True) if p.key == OFFSET)
         return sum(zero, 0.0)
 

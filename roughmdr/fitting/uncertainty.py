@@ -12,8 +12,8 @@ from roughmdr.numerics.arguments import Floats
 
 _LEVEL = 0.95
 _TOGETHER = 0.99  # probability of the parameters, all together, of which the edges between jumps allow some
-_LEAST_SLOPE = 1e-6  # least slope over the largest: what changes the law by less is not known at all
-_LEAST_FREEDOM = 1e-6  # least degrees of freedom of a step: with none, the fit follows it and it tells no noise
+_LEAST_SLOPE = 1e-6  # least slope over the largest: parameters that change the law by less are not known at all
+_LEAST_FREEDOM = 1e-6  # least degrees of freedom of a step: with none, the fit follows it whatever the noise
 _NEIGHBOURS = 2  # steps to each side whose residuals estimate the noise of a step
 _LEAST_NOISE = 1e-6  # least variance of the noise over the largest, where degrees of freedom are counted
 _UNKNOWN = 10.0  # standard error of x along a combination that is not known at all, however small the noise

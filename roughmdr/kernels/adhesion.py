@@ -78,7 +78,7 @@ class Adhesion(NamedTuple):
     ) -> "Adhesion":
         """Return the model asked for; w [J/m2], sigma0 [Pa] or w/sigma0 [m], the error [1]: None where not given.
 
-        RoughmdrError for an unknown model or for what does not go together, OutOfRange for a number.
+        RoughmdrError for an unknown model or arguments that exclude each other, OutOfRange for a number.
         """
         work = WORK.argument("work", work)
         if model not in get_args(AskedModel):
@@ -107,7 +107,7 @@ class Adhesion(NamedTuple):
 
     @classmethod
     def from_arguments(cls, work: float | str, material: AdhesiveMaterial) -> "Adhesion":
-        """Take what describes the attraction out of the keyword arguments of a function; errors as ``checked``."""
+        """Return the adhesion that the keyword arguments of a function describe; errors as ``checked``."""
         return cls.checked(
             material.pop("adhesion", "jkr"),
             work,
@@ -118,7 +118,7 @@ class Adhesion(NamedTuple):
 
 
 def check_combination(model: str, strength: object, range: object, error: object) -> None:  # noqa: A002
-    """Raise RoughmdrError where an adhesion model does not go with what is given, None for what is not."""
+    """Raise RoughmdrError where an adhesion model excludes an argument that is given (not None), or lacks one."""
     if strength is not None and range is not None:
         raise RoughmdrError("takes strength or range, not both")
     if model != "jkr" and strength is None and range is None:

@@ -70,8 +70,8 @@ class Kernels(ModuleType):
     in_sums: Self | None = None
     """Kernels for the sum over asperities alone, where these are too slow for it; None where they are not."""
     of_any: Self | None = None
-    """Kernels of any shape, which call the functions of this one by the addresses that its rows lead to: what is
-    compiled with them serves all shapes."""
+    """Kernels of any shape, which call the functions of this one by addresses in its rows: code compiled with them
+    serves all shapes."""
     rows_tell: bool = False
     """Whether ``branched`` depends on the shape, and is read from the row."""
     functions: Callable[[bool, bool], float] | None = None

@@ -22,8 +22,8 @@ class OutOfReach(OutOfRange):
 def first_reached(law: Law, value: float, start: float, distance: float, rtol: float, name: str) -> float:
     """Return the largest position [m] with a value, by search in ever longer and then ever shorter intervals.
 
-    ``distance`` [m] is how far down it is sought first, ``rtol`` the error over the distance from the start, ``name``
-    that of the quantity. OutOfReach where it is not found.
+    ``distance`` [m] is the depth to which it is sought first, ``rtol`` the error over the distance from the start,
+    ``name`` that of the quantity. OutOfReach where it is not found.
     """
     if law(np.array([start]))[0] >= value:
         raise OutOfReach(f"is reached above the start, {start:.4g} m; start must be higher")

@@ -85,7 +85,7 @@ def turning_points(separation: Floats) -> Floats:
 
 
 def prepare() -> None:
-    """Compile what is needed to locate a pull-off."""
+    """Compile the functions that locate a pull-off."""
     next_separations(np.arange(3.0), np.zeros(3), np.zeros(1), 0.0, 0.0)
 
 

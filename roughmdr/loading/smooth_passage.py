@@ -134,7 +134,7 @@ class _Search:
 
 
 def _first_passages(table: Table, target: Floats) -> tuple[Floats, NDArray[np.bool_]]:
-    """Return where the table first falls to each target, and which it does not reach."""
+    """Return the separations where the table first falls to each target, and which targets it does not reach."""
     lowest = np.minimum(_lowest(table), np.minimum(table.demand[:-1], table.demand[1:]))
     reached = np.minimum.accumulate(np.append(table.demand[0], lowest))
     first = np.searchsorted(-reached, -target, side="left")

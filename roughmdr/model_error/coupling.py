@@ -25,7 +25,7 @@ of the ratio of the slopes across and along the waves."""
 
 _HELD = 0.13
 """Error of the force of adhesive hills in contact, over their pull-off forces: that of one paraboloid at Tabor number 2
-(``pipelines/study.py versus_adhesive_bem``; ``pipelines/study.py adhesive_hills`` holds it against maps)."""
+(``pipelines/study.py versus_adhesive_bem``; ``pipelines/study.py adhesive_hills`` compares it with maps)."""
 
 WARNED_SHARE, WARNED_FRACTION = 0.1, 0.1
 MARKED_SHARE, MARKED_FRACTION = 0.25, 0.15
@@ -55,7 +55,7 @@ def coupling_error(
 
 
 def adhesive_hills_error(doubted: Floats, held: Floats, largest: float) -> Floats:
-    """Return what JKR adds to the error of hills at each step, over the largest force [1]; 1 where that is 0.
+    """Return the part of JKR in the error of hills at each step, over the largest force [1]; 1 where that is 0.
 
     ``doubted`` is the sum of the pull-off forces of hills out of contact in JKR that attraction with a range may have
     pulled into contact, and of hills whose contacts overlap and may merge; ``held`` is that of all other contacts,

@@ -66,7 +66,7 @@ def _own() -> Iterator[Path]:
 
 
 def _can_be_written(folder: Path, *, tidy: bool = False) -> bool:
-    """Make a folder if need be, with ``tidy`` in place of unused ones, and tell whether files can be put there."""
+    """Return whether files can be put into a folder, made if need be, with ``tidy`` in place of unused ones."""
     with suppress(OSError):
         if not folder.exists():
             folder.mkdir(parents=True, exist_ok=True)
@@ -143,7 +143,7 @@ class _Files:
         self._base = name, implementation.filename_base, implementation.locator.get_source_stamp()
 
     def _file(self, key: Any) -> str:
-        """Return the name of the file for types, a processor and bytecode, all of which ``repr`` tells apart."""
+        """Return the name of the file for types, a processor and bytecode, which are distinct in ``repr``."""
         digest = hashlib.sha256(repr((*self._base, key)).encode()).hexdigest()
         return f"{self._name}-{digest[:24]}.nbc"
 

@@ -1,9 +1,9 @@
-"""Private parts of numba, which a new version can break; those of its cache and events stand with their use.
+"""Private parts of numba, which a new version can break; others are in ``cache`` and ``compiling``.
 
 Functions of one type behind one name: compiled code calls them by addresses, to which its last argument leads, and is
 compiled once for all of them. A row of numbers, or the first of several, holds the address of a table of addresses. A
-call takes some nanoseconds and keeps a loop from vector code: what is called often is a loop itself. An address
-is valid in this process alone, and so are rows.
+call takes some nanoseconds and keeps a loop from vector code: so a function that is called often is a loop itself. An
+address is valid in this process alone, and so are rows.
 """
 
 import inspect

@@ -25,7 +25,7 @@ class Springs(NamedTuple):
     x: Floats
     """Positions [m]."""
     end: Floats
-    """Height of their ends above the undeformed surface [m]; 0 of those that are free."""
+    """Height of their ends above the undeformed surface [m]; 0 for free ones."""
 
 
 class Pressure(NamedTuple):

@@ -43,7 +43,7 @@ _MOSTLY_DRAWN = 0.9  # share of the error by draws alone, above which there is n
 def assemble(
     plan: Plan, methods: Sequence[CellMethod], collected: CollectedResults, variables: Sequence[str], command: str
 ) -> Labelled:
-    """Return the result, from what was collected in ``variables``; ``methods`` tell how each cell was computed."""
+    """Return the result from the collected ``variables``; ``methods`` are those of each cell."""
     scene, diagnostics = plan.scene, collected.diagnostics
     swept, sizes = tuple(plan.sizes), tuple(plan.sizes.values())
     runs = swept if plan.keeps_statistics else (*swept, "realization")
@@ -157,7 +157,7 @@ def _warnings(plan: Plan, diagnostics: dict[str, NDArray[Any]]) -> list[str]:
 
 
 def _describe_accuracy(accuracy: Accuracy, methods: Sequence[CellMethod]) -> str:
-    """Describe the error asked for, what it took, and where the expected law was used."""
+    """Describe the error asked for, the realisations it took, and the cells with the expected law."""
     known = [each for each in methods if not math.isnan(each.error)]
     counts = [each.realizations for each in known if each.estimator != "expected"]
     parts = [f"asked {accuracy.relative:g} of the largest mean force"]

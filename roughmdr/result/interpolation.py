@@ -98,7 +98,7 @@ def _curves(result: ResultView, name: str) -> "dict[str, xr.DataArray]":
 
 
 def _attributes(dataset: "xr.Dataset", name: str, branch: str) -> dict[str, str]:
-    """Return the attributes of what was found."""
+    """Return the attributes of the interpolated values."""
     missing = f"no value where the {branch} never reaches the {name.replace('_', ' ')}, or from steps without a value"
     about = {
         "branch": branch,

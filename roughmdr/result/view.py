@@ -171,7 +171,7 @@ class ResultView:
 
     @cached_property
     def estimator(self) -> str:
-        """How the realisations were made; "sampled" where not all alike."""
+        """The estimator of the realisations; "sampled" where they differ."""
         if "accuracy_method" in self.variables:
             used = {self.method(cell) for cell in self.cells}
             return used.pop() if len(used) == 1 else "sampled"

@@ -1,6 +1,6 @@
 """Progress of a batch: a bar on a terminal, a line now and then elsewhere; with the steps of runs that last.
 
-Runs in threads of this process tell their steps. Those in other processes, here or on a cluster, are counted when they
+Runs in threads of this process show their steps. Those in other processes, here or on a cluster, are counted when they
 are done.
 """
 

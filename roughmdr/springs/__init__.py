@@ -224,7 +224,7 @@ class Springs(NamedTuple):
         return (x[:-1] * g - G if loaded else g) - self._adhesive_part(x[1:], loaded)
 
     def _adhesive_part(self, x: Floats, loaded: bool) -> Floats:
-        """Return by how much adhesion lowers the control at each contact radius [m]."""
+        """Return the decrease of the control by adhesion at each contact radius [m]."""
         return x * self.release_stretch(x) if loaded else self.release_stretch(x)
 
 

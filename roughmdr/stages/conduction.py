@@ -88,7 +88,7 @@ class Conduction(Stage):
         _check_asked(scene, {})
 
     def check(self, scene: Given) -> None:
-        """Raise a mismatch where a conductance is asked for without what it takes."""
+        """Raise a mismatch where a conductance is asked for without the conductivities that it needs."""
         _check_asked(scene, self.factors)
 
     def inner_variables(self, names: list[str]) -> list[str]:

@@ -88,7 +88,7 @@ class Reference(Stage):
         return separations * (_STEP + _POINT * points), _BYTES * points
 
     def plan_lines(self, longest: str, finest: str) -> Iterator[str]:
-        """Yield what the reference adds to each run."""
+        """Yield the time and memory that the reference adds to each run."""
         yield f"boundary elements beside each realisation, their grid right to {self.error:g};"
         yield f"few and small contacts need finer grids: in all up to about {longest}, and {finest} for the grids"
 

@@ -49,7 +49,7 @@ class Stage(Section):
     about: ClassVar[str]
     """Line on the section, for editors."""
     small_scene: ClassVar[Mapping[str, Any]]
-    """Sections of a small scene that compiles what the section needs."""
+    """Sections of a small scene that compiles the functions of the section."""
     swept: ClassVar[bool] = True
     """Whether its keys may be swept."""
     fitted: ClassVar[bool] = True
@@ -133,7 +133,7 @@ class Stage(Section):
             yield f"{cls.about_absent}: the scene has no [{cls.key}]"
 
     def notes(self, scene: Given) -> Iterator[str]:
-        """Yield what the theory of the section neglects, for ``noted``."""
+        """Yield effects that the theory of the section neglects, for ``noted``."""
         yield from ()
 
     def coarse(self) -> Self:
@@ -152,7 +152,7 @@ class Stage(Section):
         return 0.0, 0.0
 
     def plan_lines(self, longest: str, finest: str) -> Iterator[str]:
-        """Yield what the section adds to each run, given the time and memory with the ``finest`` grids in words."""
+        """Yield the cost that the section adds to a run, given time and memory with the ``finest`` grids in words."""
         yield from ()
 
     # the law
@@ -176,7 +176,7 @@ class Stage(Section):
 
     @classmethod
     def result_lines(cls, result: Any) -> Iterator[tuple[str, str]]:
-        """Yield what a result, read through ``ResultView``, tells of the section, for its summary."""
+        """Yield lines on the section for the summary of a result, which is read through ``ResultView``."""
         yield from ()
 
     @classmethod

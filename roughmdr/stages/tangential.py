@@ -102,7 +102,7 @@ class Tangential(Stage):
             yield "slip: the scene has no path.lateral"
 
     def notes(self, scene: Given) -> Iterator[str]:
-        """Yield what the theory neglects in lateral forces that are asked for, or lie on the path."""
+        """Yield effects that the theory neglects in lateral forces that are asked for, or are on the path."""
         if TANGENTIAL_VARIABLES.keys().isdisjoint(scene.output.variables):
             return
         bodies = _bodies_of(scene)
@@ -157,7 +157,7 @@ class Tangential(Stage):
 
         Along x a tangential force moves the surface by [1 + (1 - G*/E*) cos(2 theta)]/(pi G* r), a normal one by
         1/(pi E* r) (Cerruti and Boussinesq: K. L. Johnson, Contact Mechanics (1985), sections 3.2 and 3.6). On average
-        over the directions theta contacts are coupled alike along both.
+        over the directions theta the coupling of contacts is the same along both.
         """
         from roughmdr.model_error.conductance import sticking_error
 

@@ -16,7 +16,7 @@ _TEMPORARY_PREFIX = ".roughmdr."
 
 
 def check_regular_file(path: Path) -> None:
-    """Raise RoughmdrError, naming what is there instead, unless ``path`` is a regular file or a link to one."""
+    """Raise RoughmdrError, with the kind of file, unless ``path`` is a regular file or a link to one."""
     mode = _mode(path)
     if stat.S_ISDIR(mode):
         raise RoughmdrError("is a folder; expected a file")

@@ -53,7 +53,7 @@ class Labelled(NamedTuple):
         return cls(arrays(dataset.data_vars), arrays(dataset.coords), dict(dataset.attrs))
 
     def checksum(self) -> str:
-        """Return a hash of what attributes state and of all arrays but ``run_time``, which depends on the clock."""
+        """Return a hash of the ``STATED`` attributes and of all arrays but ``run_time``, which depends on the clock."""
         stated = [(name, str(self.attrs.get(name, ""))) for name in STATED]
         digest = hashlib.sha256(repr(stated).encode(errors="replace"))
         for name, array in sorted((self.variables | self.coordinates).items()):

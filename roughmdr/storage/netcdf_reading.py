@@ -1,4 +1,4 @@
-"""Reading netCDF files, whoever wrote them; what cannot be read is refused with a RoughmdrError.
+"""Reading netCDF files, whoever wrote them; a file that cannot be read is refused with a RoughmdrError.
 
 If memory runs out while HDF5 converts strings, it frees memory that it never had, and the process dies. So memory to
 work with is checked beforehand, and strings are read a few at a time.
@@ -75,7 +75,7 @@ def _open(path: Path) -> "Iterator[netCDF4.Dataset]":
     check_regular_file(path)
     check_memory(WORKING_MEMORY, "to read a file")
     try:
-        # Warnings tell of types and packings that netCDF4 does not support: such variables are left out or left packed.
+        # Warnings are on types and packings that netCDF4 does not support: such variables are left out or left packed.
         with LOCK, warnings.catch_warnings(action="ignore"), netCDF4.Dataset(path) as file:
             yield file
     except Exception as error:  # a damaged or foreign file can make the library raise anything

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     import netCDF4
 
 _NOT_SUPPORTED = (errno.EOPNOTSUPP, errno.EINVAL, errno.ENOSYS, errno.ENODEV)  # file systems that cannot reserve space
-# Upper bounds of what a file takes besides its numbers [byte]: in all, for each array and attribute, and for each text.
+# Bounds on the size of a file besides its numbers [byte]: in all, for each array and attribute, and for each text.
 _FILE_OVERHEAD, _ARRAY_OVERHEAD, _ATTRIBUTE_OVERHEAD, _TEXT_OVERHEAD = 2**15, 2**11, 2**8, 56
 
 
@@ -50,7 +50,7 @@ def write_arrays(data: Labelled, path: Path) -> None:
         with netCDF4.Dataset(path, "w", format="NETCDF4") as file:
             _define(file, data)
         _reserve(path, size)
-        with netCDF4.Dataset(path, "r+") as file:  # closing it truncates what is reserved in excess
+        with netCDF4.Dataset(path, "r+") as file:  # closing it truncates the excess that was reserved
             for name, array in (data.coordinates | data.variables).items():
                 values = array.values
                 for block in blocks(values.shape):

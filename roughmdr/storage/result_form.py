@@ -117,7 +117,7 @@ def attribute_faults(attrs: dict[str, Any], declared: dict[str, Attribute]) -> I
 
 
 def refuse(faults: Iterable[str], function: str, kind: str, file: Path | None) -> None:
-    """Raise StoreError with the first fault of what a ``function`` has returned, in a ``file`` or in memory."""
+    """Raise StoreError with the first fault of the result of a ``function``, in a ``file`` or in memory."""
     for fault in faults:
         what = f"{kind}: not as roughmdr.{function} returns it"
         raise StoreError(f"{what if file is None else f'{file}: not a {kind} as roughmdr writes it'}: {fault}")

@@ -1,4 +1,4 @@
-"""The scene that a file carries, as far as what tells of results relies on it."""
+"""The scene in a file, as far as summaries of results rely on it."""
 
 from collections.abc import Iterator
 from typing import Any

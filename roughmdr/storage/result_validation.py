@@ -1,6 +1,6 @@
-"""Validation of a result when it is read, so that no other code has to check what a result holds.
+"""Validation of a result when it is read, so that no other code has to check its content.
 
-Anyone may have changed the file. A result may hold more than is declared; what is declared must be of its form.
+Anyone may have changed the file. A result may hold more than is declared; declared arrays must have their form.
 """
 
 from collections.abc import Iterator

@@ -90,7 +90,7 @@ def _pull_offs(data: Labelled) -> Iterator[str]:
 
 
 def _magnitudes(data: Labelled) -> Iterator[str]:
-    """Find numbers that are too large, and negative ones of what is not negative."""
+    """Find numbers that are too large, and negative ones in variables that cannot be negative."""
     for name in (*LAW_VARIABLES, *PULL_OFF, *RUN_VARIABLES):
         for each in [held for held in (name, *statistics_of(name)) if held in data.variables]:
             values = data.variables[each].values

@@ -39,7 +39,7 @@ class Heights(NamedTuple):
 
     density: Callable[[Floats], Floats]
     edges: Floats
-    endless: bool = False  # whether the support goes on beyond the last edge
+    endless: bool = False  # whether the support continues beyond the last edge
 
     @classmethod
     def of(cls, owner: str, std: float | str | None, heights: Distribution | None) -> "Heights":

@@ -25,7 +25,7 @@ from roughmdr.theory.equal_summits import representable
 _INTERVALS_TO_LONGEST = 45
 _GAMMA = Quantity("1", at_least=0.0, at_most=1.0)
 _EXP_ZERO = 30.0  # x beyond which exp(-x^2) is 0
-# Logarithms of the pressure over E* h' between which the root lies: of the squares of both a float holds what it must.
+# Logarithms of the pressure over E* h' between which the root lies: floats hold the squares of both well enough.
 _LOG_MIN, _LOG_MAX = -350.0, math.log(25.0)
 
 

@@ -36,7 +36,7 @@ class HalfSpace(NamedTuple):
     t: float
     width: float
     rise: float
-    params: Any  # those of the shape, with room for what its profile precomputes
+    params: Any  # params of the shape, with room for precomputed numbers
     zone: Zone | None = None  # around the contact, where adhesion has a range
 
     @classmethod

@@ -200,7 +200,7 @@ def substitute(weight: int, inner: bool, point: float, piece: Piece, width: floa
             top = math.asinh(kernel.leg(piece.high, point, width) / scale)
         return substitution, bottom, -math.inf if inner else top, scale
     reach = kernel.leg(point, foot, width) if weight == DISPLACEMENT else math.inf
-    middle = max(v_low, min(0.5 * reach, v_high))  # beyond it x comes near to r
+    middle = max(v_low, min(0.5 * reach, v_high))  # beyond it x may be close to r
     if not inner:
         bottom = math.asin(middle / reach)
         top = math.atan2(v_high, kernel.leg(point, piece.high, width)) if middle < v_high else -math.inf

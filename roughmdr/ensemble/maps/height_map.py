@@ -82,7 +82,7 @@ def _rms(parts: Iterable[Floats]) -> float:
 
 
 def spline_mode(surface: HeightMap) -> Literal["grid-wrap", "mirror"]:
-    """Return how the spline of a map goes on beyond its edges, as scipy.ndimage calls it."""
+    """Return the continuation of a map's spline beyond the edges, by its name in scipy.ndimage."""
     return "grid-wrap" if surface.periodic else "mirror"
 
 

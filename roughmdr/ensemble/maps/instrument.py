@@ -77,7 +77,7 @@ def _lateral_unit(channel: Any) -> str:
 
 
 def _kind(channel: Any) -> str:
-    """Return in words what a channel holds."""
+    """Return the content of a channel in words."""
     if channel.dim != 2:
         return "a line"
     if 0 in (getattr(channel, "nb_grid_pts", None) or ()):

@@ -215,7 +215,7 @@ def _spikes(height: Floats, unit: str, *, periodic: bool) -> Iterator[_Finding]:
 
 
 def _at(height: Floats, points: NDArray[np.intp]) -> str:
-    """Return the number of points and the place of the first, as the subject of a sentence."""
+    """Return the number of points and the position of the first, as the subject of a sentence."""
     row, column = divmod(int(points[0]), height.shape[1])
     first = f"point {row + 1} along x and {column + 1} along y"
     return f"the height at {first} is" if points.size == 1 else f"{points.size} heights, the first at {first}, are"

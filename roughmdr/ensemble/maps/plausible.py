@@ -9,7 +9,7 @@ IMPLAUSIBLE = "size or unit is implausible"
 _SLOPES = 1e-6, 10.0
 """R.m.s. slopes: flatter is less than an atom from point to point of any scan, steeper no instrument sees."""
 _SIDES = 1e-8, 1.0
-"""Sides of maps [m]: from a few atoms to what stands on a table."""
+"""Sides of maps [m]: from a few atoms to the size of a table."""
 _HEIGHTS = 1e-11, 1e-2
 """R.m.s. heights [m]: from a tenth of an atom to more than any instrument's range."""
 

@@ -1,7 +1,7 @@
 """The words by which headers of text files describe a map: those of Gwyddion, SPIP, Nova, Keyence, ESRI grids.
 
 A word stands at the beginning of a line, with or without quotes; a colon, an equals sign, a delimiter or blanks follow,
-then what it says. Gwyddion translates its words into the language of its user.
+then the entry. Gwyddion translates its words into the language of its user.
 """
 
 import math

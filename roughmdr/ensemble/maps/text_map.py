@@ -70,7 +70,7 @@ def _is_length(unit: Said | None) -> bool:
 
 
 def _map_of(rows: Floats, header: dict[str, Said]) -> RawMap:
-    """Return the map of rows along x with what their header says."""
+    """Return the map of rows along x, with size and unit from their header."""
     if "rows" in header and header["rows"].points != len(rows):
         raise RoughmdrError(f"has {len(rows)} rows, but line {header['rows'].line} says {header['rows'].text}")
     height, unit = rows.T, header["unit"].text if "unit" in header else None

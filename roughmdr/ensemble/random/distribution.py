@@ -86,7 +86,7 @@ class Distribution:
         below, above = below_min + between * below, above_max + between * above
         values = np.empty_like(below)
         upper = above < below
-        with np.errstate(all="ignore"):  # what overflows is refused when the distribution is read
+        with np.errstate(all="ignore"):  # overflow is refused when the distribution is read
             values[~upper] = self._family.ppf(below[~upper], *self.family_parameters)
             values[upper] = self._family.isf(above[upper], *self.family_parameters)
             values = values * self.scale + self.loc

@@ -1,4 +1,4 @@
-"""The parts of the kernels of asperities with any ``Profile``, and what kernels of all shapes have."""
+"""The parts of the kernels of asperities with any ``Profile``, and the constants of kernels of all shapes."""
 
 import inspect
 from collections.abc import Callable
