@@ -22,15 +22,15 @@ JKR = Adhesion(0.05)
 
 def prepared(shape: Any, adhesion: Adhesion) -> tuple[Any, Any]:
     columns = Columns(*(np.asarray(part, dtype=np.float64)[None] for part in shape.nondimensional()))
-    law = choose(shape.name, adhesion, columns.params)
-    material = law.material(4e6, adhesion, summed=True, energetic=True)
-    return law, law.prepare(material, columns, 0, 1, 0.0, math.inf)
+    kernels = choose(shape.name, adhesion, columns.params)
+    material = kernels.material(4e6, adhesion, summed=True, energetic=True)
+    return kernels, kernels.prepare(material, columns, 0, 1, 0.0, math.inf)
 
 
 @pytest.mark.parametrize("adhesion", [Adhesion(), JKR], ids=["none", "jkr"])
 def test_one_sum_is_compiled_for_shapes(adhesion: Adhesion) -> None:
-    laws = [choose(shape.name, adhesion, np.zeros(1)) for shape in SHAPES]
-    first, second = ((law.in_sums or law).of_any for law in laws)
+    both = [choose(shape.name, adhesion, np.zeros(1)) for shape in SHAPES]
+    first, second = ((kernels.in_sums or kernels).of_any for kernels in both)
     assert first is not None
     assert first is second
     assert compiled_sum(first, energetic=False) is compiled_sum(second, energetic=False)
@@ -39,11 +39,11 @@ def test_one_sum_is_compiled_for_shapes(adhesion: Adhesion) -> None:
 def test_rows_lead_to_the_functions_of_their_shape() -> None:
     found = []
     for shape in SHAPES:
-        law, rows = prepared(shape, JKR)
-        t = float(law.state(3.0, rows[0]))
-        assert law.reduced_control(t, rows[0]) == pytest.approx(3.0, rel=1e-12)
-        found.append(law.of_any.radius(t, rows[0]))
-        assert found[-1] == law.radius(t, rows[0])
+        kernels, rows = prepared(shape, JKR)
+        t = float(kernels.state(3.0, rows[0]))
+        assert kernels.reduced_control(t, rows[0]) == pytest.approx(3.0, rel=1e-12)
+        found.append(kernels.of_any.radius(t, rows[0]))
+        assert found[-1] == kernels.radius(t, rows[0])
     assert found[0] != found[1]
 
 

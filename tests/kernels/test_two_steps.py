@@ -28,21 +28,21 @@ def _prepared(name: str, length: float) -> tuple[Any, Any]:
     shape = SHAPES[name](**{key: value if key == "slope" else value * length for key, value in SCALED[name].items()})
     adhesion = Adhesion(W * length / 1e-6)
     columns = Columns(*(np.asarray(part, dtype=np.float64)[None] for part in shape.nondimensional()))
-    law = choose(name, adhesion, columns.params)
-    return law, law.prepare(law.material(E, adhesion), columns, 0, 1, 0.0, math.inf)[0]
+    kernels = choose(name, adhesion, columns.params)
+    return kernels, kernels.prepare(kernels.material(E, adhesion), columns, 0, 1, 0.0, math.inf)[0]
 
 
 @pytest.mark.parametrize("length", [1e-9, 1e-6, 1.0])
 @pytest.mark.parametrize("name", SCALED)
 def test_the_error_of_two_steps_is_stated(name: str, length: float) -> None:
-    law, params = _prepared(name, length)
+    kernels, params = _prepared(name, length)
     above = params[LAST_X] + np.geomspace(0.02, 3e3, 60)
     enough = 0
     for x in above.tolist():
-        exact = law.state_on_branch(x, params[COUNT], params)
+        exact = kernels.state_on_branch(x, params[COUNT], params)
         beyond = exact - params[LAST]
-        guess = law.initial_guess(law.y_of_x(x, params), params)
-        found, error, _ = law.two_steps(guess, x, params)
+        guess = kernels.initial_guess(kernels.y_of_x(x, params), params)
+        found, error, _ = kernels.two_steps(guess, x, params)
         if error <= 1e-3:  # of a guess that is near
             assert abs(found - exact) <= (error + 1e-12) * beyond
         enough += error <= _RTOL
@@ -51,13 +51,13 @@ def test_the_error_of_two_steps_is_stated(name: str, length: float) -> None:
 
 @pytest.mark.parametrize("name", ["rounded_cone", "capped_paraboloid"])
 def test_a_kink_next_to_the_state_is_not_passed_unseen(name: str) -> None:
-    law, params = _prepared(name, 1e-6)
-    kink, wrong = law.reduced_control(1.0, params), 0
+    kernels, params = _prepared(name, 1e-6)
+    kink, wrong = kernels.reduced_control(1.0, params), 0
     for way in [*np.geomspace(1e-9, 1e-2, 50), *-np.geomspace(1e-9, 1e-2, 50)]:
         x = kink * (1.0 + way)
-        exact = law.state_on_branch(x, params[COUNT], params)
+        exact = kernels.state_on_branch(x, params[COUNT], params)
         for start in (1.0 - 1e-3, 1.0 - 1e-5, 1.0 + 1e-5, 1.0 + 1e-3):
-            found, error, _ = law.two_steps(start, x, params)
+            found, error, _ = kernels.two_steps(start, x, params)
             wrong += error <= _RTOL and abs(found - exact) > 1e-12
     assert wrong == 0
 
@@ -65,10 +65,10 @@ def test_a_kink_next_to_the_state_is_not_passed_unseen(name: str) -> None:
 @pytest.mark.parametrize("name", ["sphere", "truncated_cone"])
 def test_two_steps_are_of_fourth_order_in_the_steps(name: str) -> None:
     """The distance left falls with the sixth power of the first one, of which the second is the square."""
-    law, params = _prepared(name, 1e-6)
+    kernels, params = _prepared(name, 1e-6)
     x = params[LAST_X] + 2.0
-    exact = law.state_on_branch(x, params[COUNT], params)
+    exact = kernels.state_on_branch(x, params[COUNT], params)
     beyond = exact - params[LAST]
-    left = [abs(law.two_steps(exact + far * beyond, x, params)[0] - exact) / beyond for far in (0.4, 0.2)]
+    left = [abs(kernels.two_steps(exact + far * beyond, x, params)[0] - exact) / beyond for far in (0.4, 0.2)]
     assert left[1] > 1e-15  # above rounding
     assert left[0] / left[1] > 2.0**5

@@ -25,23 +25,23 @@ SHAPES = {
 
 def kernels_of(shape: ProfileShape) -> tuple[ProfileKernels, Floats]:
     params = np.asarray(shape.nondimensional()[2])
-    law = choose(shape.name, Adhesion(0.05, "dugdale", 1e6), params[None])
-    assert isinstance(law, ProfileKernels)
-    return law, np.append(params, np.zeros(-law.first_node))  # all that the integrals read
+    kernels = choose(shape.name, Adhesion(0.05, "dugdale", 1e6), params[None])
+    assert isinstance(kernels, ProfileKernels)
+    return kernels, np.append(params, np.zeros(-kernels.first_node))  # all that the integrals read
 
 
-def by_quadrature(law: ProfileKernels, row: Floats, a: float, c: float) -> Floats:
+def by_quadrature(kernels: ProfileKernels, row: Floats, a: float, c: float) -> Floats:
     """J, K and L from knot to knot, over angles packed to where a piece begins: there g' begins like a root."""
-    g = law.mdr_profile(a, row)[2]
+    g = kernels.mdr_profile(a, row)[2]
 
     def term(z: float, kind: int, begin: float, end: float) -> float:
         angle = begin + (end - begin) * z * z
         x = c * math.sin(angle)
-        _, _, value, slope = law.mdr_profile(x, row)
+        _, _, value, slope = kernels.mdr_profile(x, row)
         terms = value - g, x * slope, (value - g) * (c * math.cos(angle)) ** 2
         return 2.0 * z * (end - begin) * terms[kind]
 
-    knots = [law.breakpoint(i, row)[0] for i in range(law.breakpoint_count(row))]
+    knots = [kernels.breakpoint(i, row)[0] for i in range(kernels.breakpoint_count(row))]
     angles = [math.asin(x / c) for x in (a, *(knot for knot in knots if a < knot < c), c)]
     found = np.zeros(3)
     for kind in range(3):
@@ -53,8 +53,8 @@ def by_quadrature(law: ProfileKernels, row: Floats, a: float, c: float) -> Float
 @pytest.mark.parametrize("name", SHAPES)
 @pytest.mark.parametrize("wide", [0.03, 1.0, 30.0])
 def test_they_are_the_integrals(name: str, wide: float) -> None:
-    law, row = kernels_of(SHAPES[name])
-    last = law.breakpoint(law.breakpoint_count(row) - 1, row)[0]
+    kernels, row = kernels_of(SHAPES[name])
+    last = kernels.breakpoint(kernels.breakpoint_count(row) - 1, row)[0]
     for a in np.array([0.01, 0.2, 0.7]) * last:
-        found = law.zone_quadrature(a, law.mdr_profile(a, row)[2], wide * a, row)
-        np.testing.assert_allclose(found, by_quadrature(law, row, a, math.hypot(a, wide * a)), rtol=1e-11)
+        found = kernels.zone_quadrature(a, kernels.mdr_profile(a, row)[2], wide * a, row)
+        np.testing.assert_allclose(found, by_quadrature(kernels, row, a, math.hypot(a, wide * a)), rtol=1e-11)
