@@ -77,9 +77,13 @@ def read_kept(path: Path) -> Kept:
     """Read the file; StoreError where it keeps no runs, or cannot be read."""
     check_kind(path)
     holder, known = holder_of(beside(path, LOCK))
+    tables, last = None, ""
     try:
-        status = path.stat()
-        tables = rows_of(path, _BATCH, _BY_KEY, _FAILED) if status.st_size else None
+        if path.stat().st_size:
+            last = datetime.fromtimestamp(path.stat().st_mtime, UTC).isoformat(timespec="seconds")
+            tables = rows_of(path, _BATCH, _BY_KEY, _FAILED)
+    except FileNotFoundError:  # the batch has just ended
+        pass
     except OSError as error:
         raise StoreError(f"{path}: cannot be read: {error.strerror}") from None
     except (sqlite3.Error, UnicodeError) as error:
@@ -89,7 +93,6 @@ def read_kept(path: Path) -> Kept:
         raise StoreError(f"{path}: holds no runs; if a batch was at work here it has ended, see {path.stem}")
     batch, by_key, failed = tables or ([], [], [])
     scene, made_with, command, began = texts(batch[0] if batch else [""] * 4)
-    last = datetime.fromtimestamp(status.st_mtime, UTC).isoformat(timespec="seconds") if scene else ""
     runs, remark = frozenset(each[:2] for each in failed), texts(failed[0])[2] if failed else ""
     return Kept(path, scene, made_with, command, began, last, Counter(dict(by_key)), runs, remark, holder, known)
 
@@ -103,14 +106,14 @@ def rows_of(path: Path, *queries: str) -> list[list[Any]]:
         return _read(path, "ro", queries)
     except sqlite3.OperationalError:
         with TemporaryDirectory() as folder:
-            for each in (path, beside(path, JOURNAL)):
-                with suppress(FileNotFoundError):
-                    shutil.copyfile(each, Path(folder) / each.name)
-            return _read(Path(folder) / path.name, "rw", queries)
+            shutil.copyfile(path, Path(folder) / path.name)
+            with suppress(FileNotFoundError):
+                shutil.copyfile(beside(path, JOURNAL), Path(folder) / beside(path, JOURNAL).name)
+            return _read(Path(folder) / path.name, "rw", queries, locks=False)
 
 
-def _read(path: Path, mode: str, queries: tuple[str, ...]) -> list[list[Any]]:
-    with closing(connect(path, mode, patience=_PATIENCE)) as database:
+def _read(path: Path, mode: str, queries: tuple[str, ...], *, locks: bool = True) -> list[list[Any]]:
+    with closing(connect(path, mode, locks=locks, patience=_PATIENCE)) as database:
         database.execute("BEGIN")
         return [database.execute(each).fetchall() for each in queries]
 

@@ -157,6 +157,8 @@ class CheckpointStore:
 
     def _close(self) -> None:
         if self._database is not None:
+            with suppress(sqlite3.Error):
+                self._database.execute("PRAGMA journal_mode = DELETE")  # removes the journal, which is empty
             self._database.close()
             self._database = None
 
@@ -179,8 +181,8 @@ class CheckpointStore:
         with _convert_errors(self._path):
             is_new = self._database is None
             self._database = database = self._database or self._connect("rwc")
-            database.execute("PRAGMA journal_mode = DELETE")
-            database.execute("PRAGMA synchronous = EXTRA")
+            database.execute("PRAGMA journal_mode = TRUNCATE")  # a new journal would cost as much as the rest
+            database.execute("PRAGMA synchronous = FULL")
             with database:
                 database.execute("BEGIN")
                 if is_new:
