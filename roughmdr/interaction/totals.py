@@ -2,8 +2,8 @@
 
 Where they do not overlap it falls off as a power of their distance: what an order leaves out. Where they do, it grows
 with how far they reach into each other. A contact that reaches to where the flank of a buried summit comes out is no
-disc either. Against boundary elements of ensembles (``pipelines/study.py versus_bem``). Where neighbours tilt the surface so
-that a contact does not reach the whole edge of its tip, its load is a little too large (``tip_edge.py``).
+disc either. Against boundary elements of ensembles (``pipelines/study.py versus_bem``). Where neighbours tilt the
+surface so that a contact does not reach the whole edge of its tip, its load is a little too large (``tip_edge.py``).
 """
 
 import math
