@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from roughmdr.aggregate import LoadingPath
 from roughmdr.asperity.contact import Contact
 from roughmdr.expected.curve import branch_ends
-from roughmdr.kernels.profile.layout import ONSET
+from roughmdr.kernels.profile.layout import FUNCTIONS, ONSET
 from roughmdr.numerics.arguments import Floats, Ints
 
 
@@ -142,6 +142,9 @@ def jump_energies(contact: Contact, jumped: Intervals) -> Floats:
         return np.zeros(jumped.step.size)
     if kernels.branched:
         jumps = zip(jumped.branch_before.astype(float), jumped.branch.astype(float), strict=True)
+        if kernels.functions is not None:  # the energy is called by an address that a row of forces does not hold
+            params = params.copy()
+            params[FUNCTIONS] = kernels.functions(False, True)
         return np.array([kernels.jump_energy(before, after, params) for before, after in jumps])
     made, lost = (kernels.energy(kernels.state(x, params), params) for x in (1.0, 0.0))
     return np.where(jumped.branch > 0, -made, lost)

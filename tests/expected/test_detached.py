@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 from numpy.polynomial.hermite_e import hermegauss
 from numpy.polynomial.legendre import leggauss
+from scenes import ensemble
 from scipy.stats import norm
 
 import roughmdr as rm
@@ -422,3 +423,17 @@ def test_the_rule_is_left_whole_where_its_parts_do_not_hold() -> None:
     assert not holds({**CASES[0], "height": {"distribution": "laplace", "scale": "1 um"}}, down)
     assert not holds(CASES[0], np.append(down, [0.0, 0.05 * UM]))
     assert not holds(CASES[0], np.array([3.0, -0.2, 2.9]) * UM)
+
+
+def test_asperities_of_one_shape_lose_the_energy_of_their_sum() -> None:
+    """The shape is one whose energies compiled code calls by address."""
+    path = np.array([3.0, -0.2, 0.2, 3.0]) * UM
+    case: dict[str, object] = {"shape": "truncated_cone", "slope": 0.2, "flat_radius": UM}
+    asked = made_of(case, path.tolist(), output={"variables": ["dissipated_energy"]})
+    law = rm.run(asked).isel(realization=0).dissipated_energy.to_numpy()
+    heights = norm.ppf((np.arange(2000) + 0.5) / 2000) * UM
+    data = ensemble(heights, shape="truncated_cone", slope=0.2, flat_radius=UM)
+    summed = rm.load_separation(
+        data, separation=path, effective_modulus=MODULUS, work=WORK, variables="dissipated_energy"
+    )
+    np.testing.assert_allclose(law, summed.dissipated_energy.to_numpy() / 2000, rtol=0.0, atol=2e-3 * law.max())
