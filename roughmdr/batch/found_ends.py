@@ -27,8 +27,8 @@ from roughmdr.scene.separation import CLEAR, Target
 _RTOL = 1e-14  # error of the stop, over its distance from the start
 _MOST_OF_PATCH = 0.3  # area of a contact, over the nominal one, that makes it none of many
 _FIRST = 1e-6  # first distance, over the width of an asperity, where all summits are at the start
-_CHANCE = 1e-3  # that any asperity of all realisations is higher
-_REALIZATIONS = 10_000  # that are allowed for in any case, so that a batch can be extended
+_CHANCE = 1e-3  # probability that any asperity of all realisations is higher
+_REALIZATIONS = 10_000  # least number of realisations allowed for, so that a batch can be extended
 _USUAL_CHANCE = 0.1  # or that of the highest asperity of a realisation, for what is usual
 _FAR = 1e3  # distance of the start, over the usual one, at which nearly all steps would have no contact
 

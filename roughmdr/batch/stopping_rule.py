@@ -10,9 +10,9 @@ from roughmdr.scene.sections import Accuracy
 
 FIRST = 16  # realisations at least, before a standard error is believed at all
 _SCORE_99 = 2.326  # normal score of 99 %, the fraction of cases in which the true standard error is to be met
-_ADDED_FRACTION = 0.7  # of the realisations that seem to be missing, before the next look
+_ADDED_FRACTION = 0.7  # share of the realisations that seem to be missing, run before the next look
 _MIN_GROWTH, _MAX_GROWTH = 0.02, 4  # from one look to the next: realisations added over present; after over before
-_MAX_RATIO = 1e3  # of error to error asked for: above it more than _MAX_GROWTH is missing in any case
+_MAX_RATIO = 1e3  # error over the error asked for, above which more than _MAX_GROWTH is missing in any case
 
 
 def relative_error(moments: Moments, unmet: Floats | float = 0.0, *, over_range: bool = False) -> float:

@@ -29,7 +29,7 @@ class Source(Section):
     """Whether the asperities are the summits of a continuous surface."""
 
     papers: ClassVar[dict[str, str]] = {}
-    """What each paper on such summits is cited for, by its key in report/papers.bib."""
+    """Subject of each paper on such summits, by its key in report/papers.bib."""
 
     source: str
     """"random": from distributions; "nayak": summits of a Gaussian surface; "spectrum": hills or summits of maps of

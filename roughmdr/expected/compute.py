@@ -38,8 +38,8 @@ from roughmdr.model_error.distances import FEW, error_of_few
 from roughmdr.model_error.interaction import poisson_overlap
 from roughmdr.numerics.arguments import Floats, Ints
 
-_MAX_ERROR = 0.1  # of the largest force: a larger error is refused
-_KERNEL_ERROR = 1e-12  # of the force of a contact, as the kernels are tested
+_MAX_ERROR = 0.1  # error, over the largest force, above which the law is refused
+_KERNEL_ERROR = 1e-12  # relative error of the force of a contact, to which the kernels are tested
 _HEAVY_TAIL = 0.05  # tail index below which the heights left out bear a negligible force
 
 

@@ -23,13 +23,13 @@ from roughmdr.numerics.arguments import Floats, Ints
 
 FIRST_ORDER = 8
 WARNED_ERROR = 1e-3
-"""Of the largest force: users are warned of larger errors."""
+"""Error, over the largest force, above which users are warned."""
 _ORDERS = (12, 18, 27, 40, 60, 90, 135)
 _MAX_NODES = 6_000
-_RTOL_ORDER = 1e-11  # of the largest force: orders whose forces differ by less are both right
-_MAX_ERROR = 1e-6  # of the largest: one parameter with a larger error is integrated over panels
-_MAX_PARTIAL = 1e-9  # of the largest: with a larger error the rule is split, or integrated over panels
-_RTOL_KINKED = 1e-7  # of the largest values: tolerance of panels with kinks, where a smaller one costs too much
+_RTOL_ORDER = 1e-11  # largest difference of the forces of two right orders, over the largest force
+_MAX_ERROR = 1e-6  # error, over the largest, above which a single parameter is integrated over panels
+_MAX_PARTIAL = 1e-9  # error, over the largest, above which the rule is split or integrated over panels
+_RTOL_KINKED = 1e-7  # tolerance of panels with kinks, over the largest value: a smaller one costs too much
 _KINK_FACTOR = 10.0  # safety factor on the change by halving panels, since nodes may miss kinks between them
 _SLOW = 0.3  # a higher order that leaves more of the difference does not help
 _SLOWEST = 0.9  # a difference is taken to be at most so much of the one before
@@ -50,7 +50,7 @@ class Converged(NamedTuple):
     error: float
     """Error bound of the force over its largest value; inf where there is none."""
     error_of_others: float
-    """Likewise of the other rows, except for the stiffness, which is infinite at detachment."""
+    """Error bound of the other rows over their largest values, without the stiffness, infinite at detachment."""
     smooth: bool
     """Whether the rules are those for smooth functions."""
 

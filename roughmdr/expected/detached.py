@@ -29,12 +29,15 @@ from roughmdr.numerics.chebyshev import find_piece, series_at
 from roughmdr.numerics.gauss import last_coefficients, unit_gauss
 from roughmdr.numerics.jit import njit
 
-_ORDER = 48  # of the rule over s on each of two panels, which part where the median depth has the limit
+_ORDER = 48  # order of the rule over s on each of two panels, which meet where the median depth has the limit
 _NODES, _WEIGHTS = unit_gauss(_ORDER)
 _LAST = last_coefficients(_ORDER)
-_NEAR_END, _NO_HEIGHTS = 0.01, 1e-12  # of the range of heights, and of all heights: with more there they have an end
-_KINK = 1e-6  # of the largest slope of the density: it jumps by no more where it is smooth
-_NEGLIGIBLE = 1e-14  # of all asperities
+_NEAR_END, _NO_HEIGHTS = (
+    0.01,
+    1e-12,
+)  # share of the range of heights; of all heights: more mean an end
+_KINK = 1e-6  # jump of the slope of a smooth density, over its largest slope, at most
+_NEGLIGIBLE = 1e-14  # fraction of all asperities that is left out
 
 
 class PartialRule(NamedTuple):
@@ -44,7 +47,7 @@ class PartialRule(NamedTuple):
     nodes: list[QuadratureNode]
     lines: list[Line]
     steps: Ints
-    """Those that need it."""
+    """Steps that need the parts."""
 
     @classmethod
     def of(cls, problem: MeanProblem, rules: tuple[Rule, ...], nodes: list[QuadratureNode]) -> "PartialRule | None":

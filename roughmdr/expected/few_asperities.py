@@ -1,4 +1,4 @@
-"""As few asperities with weights as have the expected law to an error asked for: quadrature nodes for other codes.
+"""The fewest asperities with weights whose sum is the expected law to an error asked for: nodes for other codes.
 
 Over the shape parameters a Gauss rule of few scores is taken, over the heights of each of its nodes a rule of
 ``height_rules``. Both are refined until force and contact area are within the error all along the path, also between
@@ -27,12 +27,12 @@ from roughmdr.numerics.arguments import Floats
 _VARIABLES = ("force", "contact_area", "contact_count")
 _ROWS = (FORCE, AREA, COUNT)
 _SEPARATIONS = 1024
-"""At which the error is taken, at least: steps of the path and separations between them."""
+"""Least number of separations at which the error is taken: steps of the path and separations between them."""
 _ORDERS = (1, 2, 3, 4, 6, 8, 12, 18, 27)
 _SHARE = 0.25
-"""Of the error asked for, that the rule over the shape parameters may use."""
+"""Share of the error asked for that the rule over the shape parameters may use."""
 _MOST_HEIGHTS = {"gauss": 100, "equal_fractions": 5_000}
-"""Of one score of the shape parameters."""
+"""Most heights for one score of the shape parameters."""
 _SHARE_POWER = {"gauss": 2.0 / 7.0, "equal_fractions": 1.0}
 _GROWTH = 1.3
 _AT_ONCE = 2**21  # contacts

@@ -16,7 +16,7 @@ RULES = ("gauss", "equal_fractions")
 _NODES, _WEIGHTS = gauss(16)
 _POINTS_PER_NODE = {"gauss": 32, "equal_fractions": 256}
 _TAIL_POWER, _FEWEST = 1.25, 4
-"""Of ``count`` heights by Gauss's rule one is of the highest summits, which have count^-5/4 of the sum of all heights
+"""Gauss's rule of ``count`` heights has one for the highest summits, those with count^-5/4 of the sum of all heights
 above the lowest. Measured on normal and exponential heights and on the summits of Gaussian surfaces, without adhesion:
 an error of 6e-4 takes 49, 61 and 123 nodes in place of 105, 549 and 271; powers 1 and 2 take more.
 """

@@ -18,9 +18,9 @@ from roughmdr.numerics.gauss import gauss
 from roughmdr.numerics.jit import njit
 
 _TOLERANCE, _MAX_RATIO = 1e-13, 1e3  # error of each piece, of all heights, and how much the density may vary there
-_MISSING = 1e-12  # of all heights: less is roundings, which must not count as the highest of a heavy tail
-_MIN_WIDTH = 2.0**-44  # of a piece, over the scale of the heights or over the height itself
-_ROUNDING = 2.0**-51  # of a height
+_MISSING = 1e-12  # fraction of all heights that is rounding, and must not count as the top of a heavy tail
+_MIN_WIDTH = 2.0**-44  # least width of a piece, over the scale of the heights or over the height itself
+_ROUNDING = 2.0**-51  # relative rounding of a height
 _SMOOTH = 1e-2  # relative error of a series up to which the density is taken to be smooth with roundings
 
 _NODES, _WEIGHTS = gauss(16)
@@ -36,7 +36,7 @@ class HeightTable(NamedTuple):
     high: Floats
     """[piece]"""
     coefficients: Floats
-    """Of the density [1/m]: [piece, 1, order]."""
+    """Coefficients of the density [1/m]: [piece, 1, order]."""
     doubt: Floats
     """Error bound of the density [1/m]; fraction of all heights that lie on the piece, nobody knows where; fraction of
     which it is not known whether they lie on it: [piece, 3]."""

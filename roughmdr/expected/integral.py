@@ -11,9 +11,9 @@ from roughmdr.numerics.gauss import gauss, last_coefficients
 from roughmdr.numerics.jit import njit
 
 _NODES, _WEIGHTS = gauss(16)
-_LAST = last_coefficients(16)  # of a product: they tell how far its integral may be off
-_NARROW = 2.0**-5  # of the distance to the onset of contact
-_BETWEEN_NODES = 1.1  # times the range of values at the nodes, which lie within the ends of a piece
+_LAST = last_coefficients(16)  # coefficients of a product that tell how far its integral may be off
+_NARROW = 2.0**-5  # width of an interval, over the distance to the onset of contact, that counts as narrow
+_BETWEEN_NODES = 1.1  # range of values on a piece over that at its nodes, which lie within its ends
 
 
 @njit

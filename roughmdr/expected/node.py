@@ -31,7 +31,7 @@ class MeanProblem(NamedTuple):
     rows: tuple[int, ...]
     """Rows of the totals; the first is FORCE."""
     unjudged: tuple[int, ...] = ()
-    """Of these, rows whose error does not count: the model error alone needs them."""
+    """Rows among these whose error does not count: the model error alone needs them."""
 
     @property
     def judged(self) -> tuple[int, ...]:
@@ -64,9 +64,9 @@ class QuadratureNode(NamedTuple):
     """The mean contact above first touch of all nodes that were set up with these heights; None where the curve goes
     on."""
     in_contact: Intervals
-    """Of heights as differences to the origin of ``heights``."""
+    """Intervals of heights in contact, as differences to the origin of ``heights``."""
     jumped: Intervals
-    """Likewise."""
+    """Intervals of heights that have jumped, likewise."""
 
 
 def contacts_of(problem: MeanProblem, nodes: Nodes) -> list[Contact]:

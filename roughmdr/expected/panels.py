@@ -22,8 +22,8 @@ _MIN_END = 8.5  # a nearer one only where no contact is representable there
 _ORDER = 10
 _MAX_NODES = 2_000
 RTOL_PANEL = 1e-12
-"""Of the largest values: panels that differ from their halves by less are right."""
-_NEGLIGIBLE = 1e-13  # of the largest values: parameters that contribute less may be left out
+"""Difference of panels from their halves, over the largest values, below which they are right."""
+_NEGLIGIBLE = 1e-13  # contribution, over the largest values, that may be left out
 
 Curves = Callable[[list[QuadratureNode]], Floats]
 """Nodes -> their sums, with their fractions of all asperities: [curve, step]."""

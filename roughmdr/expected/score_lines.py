@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from roughmdr.ensemble.nodes import Rule, hermite
 from roughmdr.numerics.arguments import Floats, Ints
 
-_STEPS = 8  # of Newton's method
+_STEPS = 8  # steps of Newton's method
 _NEGLIGIBLE = 1e-24  # weight of a score: what is there, far in a tail, does not matter
 
 
@@ -18,7 +18,7 @@ class Line(NamedTuple):
 
     rule: Rule
     numbers: Ints
-    """Of the nodes: [score]."""
+    """Numbers of the nodes: [score]."""
 
 
 def lines_along(axes: tuple[int, ...], rules: tuple[Rule, ...], values: Floats) -> list[Line]:

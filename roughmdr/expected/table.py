@@ -10,14 +10,14 @@ from roughmdr.numerics.chebyshev import chebyshev_nodes
 
 ORDER = 16
 """Coefficients of each series."""
-_MAX_HALVINGS = 400  # as many as the heaviest tail needs
+_MAX_HALVINGS = 400  # most halvings of a piece: the heaviest tail needs as many
 _MAX_PIECES_AT_ONCE = 2**12  # a function that no polynomial fits would make more and more of them
 _NOISE, _BETTER = (
     1e-8,
     0.25,
 )  # below _NOISE, last coefficients that halving leaves above _BETTER of the former are roundings
-_NEGLIGIBLE = 1e-16  # of the largest value: such coefficients are roundings, and cost time
-_LAST = 2  # of the coefficients, which tell how far the series is off
+_NEGLIGIBLE = 1e-16  # coefficients, over the largest value, that are roundings and cost time
+_LAST = 2  # number of last coefficients that tell how far the series is off
 
 _NODES, _TO_COEFFICIENTS = chebyshev_nodes(ORDER)
 _ENDS = np.array([-1.0, 1.0]) * (1.0 - 2.0**-26)  # just inside the ends, beyond the outermost nodes

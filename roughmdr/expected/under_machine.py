@@ -17,7 +17,7 @@ from roughmdr.loading.smooth_passage import separations_of
 from roughmdr.numerics.arguments import Floats
 from roughmdr.variables import LOSSES
 
-_CHANCE = 1e-9  # that an asperity is higher than where the search begins
+_CHANCE = 1e-9  # probability that an asperity is higher than where the search begins
 
 
 def compute_under_machine(

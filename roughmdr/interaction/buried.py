@@ -10,7 +10,7 @@ from roughmdr.interaction.neighbours import within_reach
 from roughmdr.numerics.arguments import Floats
 from roughmdr.shapes import SHAPES, FlatPunch, ProfileShape
 
-_NEAREST = 1e-5  # of the side of the patch: 1/r^3 is then 1e15 times what is smooth on the patch
+_NEAREST = 1e-5  # least distance, over the side of the patch: 1/r^3 is then 1e15 times its smooth part
 _DOUBLINGS, _HALVINGS = 200, 30
 _SEARCHED = 4.0
 """Radius up to which a hidden flank is looked for, over that at which a flank is as low as the lowest summit."""

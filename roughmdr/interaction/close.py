@@ -24,10 +24,10 @@ from roughmdr.numerics.gauss import unit_gauss
 from roughmdr.numerics.jit import njit
 
 FULL, NONE = 0.8, 1.0
-_GROWTH = 1.15  # of contact radii until pairs are looked for again
-_NODES, _WEIGHTS = unit_gauss(4)  # of the load of a contact, from none to all
+_GROWTH = 1.15  # growth of the contact radii after which pairs are looked for again
+_NODES, _WEIGHTS = unit_gauss(4)  # quadrature over the load of a contact, from none to all
 _POINT = 1e-5  # a smaller punch, over the larger one, is a point: the square of this is left out
-_LEAST_EXCESS = 1e-9  # of a sum of punches over one punch
+_LEAST_EXCESS = 1e-9  # least excess of the sum of two punches over one, relative
 
 
 class Pairs(NamedTuple):

@@ -19,7 +19,7 @@ from roughmdr.interaction import close
 from roughmdr.interaction.coupling import Coupling, add_moments, field_of, first_order
 from roughmdr.numerics.arguments import Floats
 
-_RTOL = 0.01  # of a step
+_RTOL = 0.01  # relative error of a Newton step
 _MAX_STEPS = 20
 
 
@@ -34,7 +34,7 @@ class Punches(NamedTuple):
     tangent: Coupling
     """That of the steps, which are less accurate."""
     pairs: close.Pairs
-    """Those that overlap."""
+    """Overlapping pairs."""
     order: int
 
 

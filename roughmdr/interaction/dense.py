@@ -32,7 +32,7 @@ class Dense:
 
     def __init__(self, x: Floats, y: Floats, patch: Periodic, periodic: bool, known: "Dense | None" = None) -> None:
         self.error = 1e-12
-        """Of the displacements."""
+        """Relative error of the displacements."""
         self.matrices = np.empty((4, x.size, x.size))
         self._last: tuple[NDArray[np.int64], Dense] | None = None
         first = 0 if known is None else known.matrices.shape[1]

@@ -15,7 +15,7 @@ from roughmdr.numerics.jit import njit
 
 _ROOT_PI = math.sqrt(math.pi)
 _REACH = 6.0  # erfc(6) is 2e-17
-_MARGIN = 0.1  # of the range of displacements: between the points they may be less than at them
+_MARGIN = 0.1  # margin over the range of displacements: between the points they may be less than at them
 
 
 class Periodic(NamedTuple):

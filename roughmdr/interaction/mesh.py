@@ -30,10 +30,10 @@ from roughmdr.numerics.jit import njit
 _OVERSAMPLING = 1.6  # mesh points for each half wave that is kept
 _MESH_PER_REACH = 1.0  # mesh points for each mean spacing of the contacts, over erfc^-1(error)
 _FREE = 2.5  # side of the patch in which a free one lies
-_STEEPNESS = 10.0  # of the cut: erfc(5) is 2e-12
+_STEEPNESS = 10.0  # steepness of the cut: erfc(5) is 2e-12
 _LEAST_MESH, _LEAST_FREE_MESH = 24, 120  # mesh points for the shorter side; the cut must be resolved
 _LARGE_MESH = 2**18  # points from which on a transform is worth several cores
-_ROWS_AT_A_TIME = 8  # of the mesh, along which points follow each other, so that their cells are in the cache
+_ROWS_AT_A_TIME = 8  # rows of the mesh along which points follow each other, so that their cells are in the cache
 _NODES, _WEIGHTS = unit_gauss(60)
 
 Complex = NDArray[np.complex128]

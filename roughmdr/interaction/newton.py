@@ -19,9 +19,9 @@ from roughmdr.interaction.interface import Asperities, Contacts, CoupledKernels
 from roughmdr.numerics.arguments import Floats
 
 _MAX_STEPS = 40
-_RTOL = 0.03  # of a step
+_RTOL = 0.03  # relative error of a Newton step
 _LOST = 15, 0.05  # after so many steps one that changes so much of the load leads nowhere
-_LEAST_RATIO = 0.25  # of two steps that is counted on: a smaller one is luck, as each step leaves a few per cent
+_LEAST_RATIO = 0.25  # least ratio of two steps that is counted on: each step leaves a few per cent
 _MOST_RATIO = 0.9  # and the largest: at rest, where only rounding is left, steps no longer fall
 _REMEMBERED = 8  # steps, the largest of which is the error of loads that do not come to rest
 _STIFFNESS_RTOL, _RESTART, _RESTARTS, _PROBE = 1e-6, 20, 5, 1e-5
@@ -38,7 +38,7 @@ class System(NamedTuple):
     at: Floats
     """Positions, [asperity, 2]."""
     sides: Floats | None
-    """Of the patch that repeats; None of a free one."""
+    """Sides of the patch that repeats; None of a free one."""
     order: int
 
 
@@ -54,7 +54,7 @@ class State(NamedTuple):
     lost: int
     """Number of contacts that are no discs."""
     slopes: Floats
-    """Of the displacement by point loads at each asperity, along x and along y; 0 to first order."""
+    """Slopes of the displacement by point loads at each asperity, along x and along y; 0 to first order."""
 
 
 class Equilibrium(NamedTuple):

@@ -28,10 +28,10 @@ from roughmdr.shapes import SHAPES
 DENSE_UP_TO: dict[Boundary, int] = {"periodic": 150, "free": 1500}
 """Number of asperities up to which pairs are summed one by one: where both take as long
 (``pipelines/study.py coupling``)."""
-_MESH_ERROR, _SOLVER_ERROR = 0.3, 0.6  # of the error asked for
-_TANGENT_ERROR = 1e-3  # of the mesh for the steps, each of which leaves a few per cent
-_GROWTH = 1.3  # of the number of asperities that can touch, so that a few separations have the same
-_ROUGH_ERROR = 1e-2  # of the force, until all asperities that can touch are taken
+_MESH_ERROR, _SOLVER_ERROR = 0.3, 0.6  # shares of the error asked for
+_TANGENT_ERROR = 1e-3  # error of the mesh for the steps, each of which leaves a few per cent
+_GROWTH = 1.3  # growth of the number of asperities that can touch, so that a few separations share one
+_ROUGH_ERROR = 1e-2  # relative error of the force until all asperities that can touch are taken
 _FAILURES = 3  # separations without an equilibrium, one after the other, below which none is looked for
 
 

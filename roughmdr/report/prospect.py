@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from roughmdr.batch.foresee import Foreseen, Prospect
     from roughmdr.batch.plan import Plan
 
-_ROUNDING = 1e-9  # of the largest pressure
+_ROUNDING = 1e-9  # difference of pressures, over the largest, that is rounding
 _HARDEST = 1e11  # hardness of diamond [Pa]; no mean pressure of a contact is larger
 
 

@@ -25,7 +25,7 @@ from roughmdr.stages import STAGES
 from roughmdr.stages.given_scene import AnySection
 from roughmdr.stages.stage import Stage
 
-_NEGLIGIBLE = 0.01  # of the required error
+_NEGLIGIBLE = 0.01  # share of the required error that is negligible
 
 
 def _check_title(value: object) -> str:

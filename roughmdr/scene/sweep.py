@@ -42,7 +42,7 @@ NUM = WholeNumber(2, 100_000)
 ENDS = ("linspace", "logspace")
 """Tables with two ends, which ``num`` values are between."""
 _MAX_CELLS = 100_000
-_DIGITS = 15  # of values between two ends, so that 0.3 is 0.3 and can be selected
+_DIGITS = 15  # digits of values between two ends, so that 0.3 is 0.3 and can be selected
 
 
 class Axis(NamedTuple):

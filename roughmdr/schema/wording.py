@@ -3,7 +3,7 @@
 from collections import Counter
 from collections.abc import Iterable, Iterator
 
-_MIN_SIMILARITY = 0.7  # of difflib's ratio: one or two letters of a word
+_MIN_SIMILARITY = 0.7  # least ratio of difflib: one or two letters of a word differ
 _LAYOUT = "\n\t"
 
 

@@ -30,7 +30,7 @@ SHAPES: dict[str, type[Shape]] = {
 }
 
 SCENE_SHAPES = {name: shape for name, shape in SHAPES.items() if not issubclass(shape, TabledShape)}
-"""Those that a scene draws asperities of; the others are of files and maps alone."""
+"""Shapes that a scene draws asperities of; the others are of files and maps alone."""
 
 __all__ = [
     "SCENE_SHAPES",

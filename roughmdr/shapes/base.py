@@ -45,7 +45,7 @@ class Shape(ABC):
     body_radius: ClassVar[tuple[str, ...]] = ()
     """The parameters whose sum is the radius where the body that the profile stands for ends."""
     papers: ClassVar[Mapping[str, str]] = {}
-    """What each paper is cited for, "contact" or "adhesion", by its key in report/papers.bib."""
+    """Subject of each paper, "contact" or "adhesion", by its key in report/papers.bib."""
 
     def __new__(cls, *_: Any, **given: Any) -> Self:
         """Raise TypeError where a keyword is no parameter of the shape."""

@@ -11,7 +11,7 @@ from roughmdr.numerics.arguments import Floats
 from roughmdr.shapes import mdr_pieces
 from roughmdr.shapes.array_shapes import TabledShape, equal_rows, power_of_two
 
-_MIN_STEP = 1e-6  # of the last radius, and of the last g: nearer points leave no digits to the slope between them
+_MIN_STEP = 1e-6  # least step, over the last radius and the last g: nearer points leave no digits to the slope
 _MAX_LENGTH = 1e100  # [m], so that the squares of radii are floats
 
 

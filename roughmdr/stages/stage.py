@@ -73,7 +73,7 @@ class Stage(Section):
     noted: ClassVar[str] = ""
     """Attribute of results, and name in summaries, of ``notes``; one of ``RESULT_ATTRIBUTES``."""
     papers: ClassVar[Mapping[str, str]] = {}
-    """What each paper is cited for, by its key in report/papers.bib."""
+    """Subject of each paper, by its key in report/papers.bib."""
 
     # the scene
 

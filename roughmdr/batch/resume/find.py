@@ -18,7 +18,7 @@ from roughmdr.storage.labelled import Labelled
 from roughmdr.storage.result_file import read_result
 from roughmdr.variables import DONE, FAILED, LAW_VARIABLES, PULL_OFF_NUMBERS, RUN_DIAGNOSTICS
 
-_MAX_CHANGES = 5  # in a message
+_MAX_CHANGES = 5  # most changes that a message lists
 _REMEDY = "give another output, or --fresh (resume=False) to replace it"
 Reader = Callable[[], TaskResult | None]  # reads a task result; None where it is damaged
 

@@ -14,8 +14,8 @@ from roughmdr.schema.toml_text import parse_toml
 from roughmdr.schema.wording import short_repr
 
 _PACKAGES = ("numpy", "numba", "scipy")  # which numbers come from
-_MAX_LETTERS = 1000  # of a value in a message, such as a path or a list of numbers
-_DECISIVE = ("batch.estimator", "accuracy.method")  # in sections that decide no number else
+_MAX_LETTERS = 1000  # most letters of a value in a message, such as a path or a list
+_DECISIVE = ("batch.estimator", "accuracy.method")  # the only keys of [batch] and [accuracy] that decide a number
 
 
 @cache

@@ -99,7 +99,7 @@ class CheckpointStore:
     def __init__(self, target: Path | None, stack: ExitStack) -> None:
         self.target, self._stack = target, stack
         self.scene = self.versions = self._replaces = ""
-        """Of the batch that began the file: its TOML text, versions, and the stamp of the file that it may replace."""
+        """TOML text of the batch that began the file, its versions, and the stamp of the file that it may replace."""
         self.empty = True
         """Whether no task result is stored."""
         self._path: Path | None = None

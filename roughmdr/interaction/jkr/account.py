@@ -17,7 +17,7 @@ from roughmdr.loading.pull_off import PullOff
 from roughmdr.numerics.arguments import Floats
 from roughmdr.schema.units import format_quantity
 
-_SOLVER_ERROR = 1e-11  # of all loads
+_SOLVER_ERROR = 1e-11  # error of the equilibria, over the sum of all loads
 _STRETCH = 3.0 * 4.0 ** (-4.0 / 3.0)  # stretch at which a paraboloid detaches, over its natural depth
 
 
@@ -51,7 +51,7 @@ class Account:
     ) -> None:
         self._front, self._names, self._length = front, names, front.length
         self.energy_unit = front.modulus * front.length**3
-        """Of energies in units of the patch [J]."""
+        """Unit of energies reduced by the patch [J]."""
         self._steps, self._separation, self._avalanches = list[Step](), list[float](), list[Avalanche]()
         self._radius, self._force = np.zeros((2, front.total))
         self._at, self._closest, self._reach = at, math.inf, _STRETCH * reach

@@ -5,7 +5,7 @@ Where the values jump, and it goes slowly, by halves.
 
 Point = tuple[float, float]
 
-_ROUNDS = 4  # in which the bracket has to halve
+_ROUNDS = 4  # number of steps in which the bracket has to halve
 
 
 class Bracket:

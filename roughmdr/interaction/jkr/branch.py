@@ -16,18 +16,18 @@ from roughmdr.interaction.jkr.factors import Factors, Lead
 from roughmdr.interaction.jkr.newton import newton
 from roughmdr.interaction.jkr.tangent import Tangent, leading
 
-_LARGEST_CHANGE = 0.2  # of a state in a step by the rate of change
+_LARGEST_CHANGE = 0.2  # largest relative change of a state in one continuation step
 _NEAR = 0.8  # change of the logarithm of a state on one path
-_LEAD_STEP, _LEAST_LEAD_STEP, _LARGEST_LEAD_STEP = 0.1, 1e-6, 0.3  # of the state that leads
+_LEAD_STEP, _LEAST_LEAD_STEP, _LARGEST_LEAD_STEP = 0.1, 1e-6, 0.3  # relative steps of the leading state
 _OVERSHOOT = 1.1
 _NEAR_FLAT, _FLAT_STEP = 0.01, 0.5  # a state near the edge of a flat, and steps from there
-LEAST_STATE = 1e-7  # of the natural one: the contact is at the edge of its flat
+LEAST_STATE = 1e-7  # state over the natural one, below which the contact is at the edge of its flat
 _MAX_ROUNDS = 200
 _ROUGH = 1e-8  # error of states on the way, over the natural depth
-_KINK = 1e-9  # of a state, across which the slope before a fold jumps
-_FOLD_RTOL = 1e-6  # of the slope before a fold, from where the place changes by its square
+_KINK = 1e-9  # relative distance of two states between which the slope before a fold jumps
+_FOLD_RTOL = 1e-6  # slope before a fold, relative, below which the position changes by its square
 _SLOPE_RTOL = 1e-5
-_AT_FOLD = 1e-6  # of the path: so near before a fold the stable state may not be found
+_AT_FOLD = 1e-6  # distance to a fold, over the path, within which the stable state may not be found
 _SIGN_RTOL = 1e-2
 
 

@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 from roughmdr.interaction.interface import Asperities, kernel
 from roughmdr.numerics.arguments import Floats
 
-_STEP = 1e-4  # of the state, for the derivatives of lambda, which only a small square multiplies
+_STEP = 1e-4  # relative step of the state, for derivatives of lambda, which only a small square multiplies
 _HELD = 0.3  # state of a contact with a flat up to which its edge keeps it from sliding
 
 

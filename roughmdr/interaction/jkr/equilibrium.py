@@ -67,8 +67,8 @@ class State(NamedTuple):
     load: Floats
     separation: float
     outer: Floats
-    """What contacts that have jumped did to others and those have not taken up yet, [row, asperity]: the displacement
-    with its derivatives, as ``field``, and the part of de/da by overlap."""
+    """Effect of jumped contacts that the others have not taken up yet, [row, asperity]: the displacement with its
+    derivatives, as ``field``, and the part of de/da by overlap."""
     field: Floats
     contacts: Contacts
     overlap: coincident.Overlap

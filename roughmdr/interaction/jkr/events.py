@@ -13,7 +13,7 @@ from roughmdr.interaction.jkr.newton import newton
 from roughmdr.numerics.arguments import Floats
 
 _MAX_PIECES, _MAX_ROUNDS = 2000, 40
-_SAME = 1e-12  # of the natural depth
+_SAME = 1e-12  # distance of two events, over the natural depth, below which they are one
 
 
 class Event(NamedTuple):

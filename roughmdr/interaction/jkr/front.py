@@ -28,9 +28,9 @@ from roughmdr.numerics.jit import once
 
 _GROWTH = 1.3  # number of asperities that are looked at, over the one before, where more may touch
 _FURTHER = 1.0  # way down, over the depth of the flat, after which pairs that may overlap are looked for again
-_MARGIN = 0.25  # of the natural depth, within which asperities out of contact are looked at
-_CLEAR = 0.1  # of the margin that asperities outside the window must keep
-_MOST_AVALANCHES = 10  # in a step, over the number of asperities near contact: more lead nowhere
+_MARGIN = 0.25  # distance to contact, over the natural depth, within which asperities are looked at
+_CLEAR = 0.1  # share of the margin that asperities outside the window must keep
+_MOST_AVALANCHES = 10  # most avalanches in a step, over the number of asperities near contact
 _LARGEST_WINDOW, _SMALL_WINDOW = 1.5, 50  # asperities that may be in it over those that need to be, and some
 
 

@@ -10,9 +10,9 @@ from roughmdr.interaction.interface import Asperities, kernel
 from roughmdr.numerics.arguments import Floats
 
 _STRIDE, _LEAST_STATE, _MOST_STATE = 1.1, 1e-30, 1e30
-_SET_OUT = 0.05  # of the state at a fold, where the edge is at rest: the neighbours move that of the contact alone
+_SET_OUT = 0.05  # relative first step from the state at the fold of the contact alone, which neighbours move
 _BISECTIONS = 100
-MOST_SLIDE = 2.0  # of its radius by which a contact slides on a tilted surface: a smaller one has no place there
+MOST_SLIDE = 2.0  # slide of a contact on a tilted surface, over its radius, beyond which there is no contact
 
 
 class Surface(NamedTuple):

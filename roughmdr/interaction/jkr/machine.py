@@ -18,7 +18,7 @@ from roughmdr.loading.machine import DEAD_LOAD, Leg, Machine, MachinePath, legs_
 from roughmdr.numerics.underway import each_step
 
 _LONGEST, _SHORTEST = 0.5, 1e-4  # way of the flat at a time, over the natural depth or its depth below first touch
-_OVERSHOOT = 1.2  # over the way to where the demand would be passed
+_OVERSHOOT = 1.2  # step over the distance to where the demand would be met by the slope
 _SHORTER, _MAX_SHORTER = 0.1, 4
 _MAX_WAYS = 100_000
 

@@ -11,12 +11,12 @@ from roughmdr.interaction.jkr.equilibrium import Drive, PairProblem, State, Step
 from roughmdr.interaction.jkr.factors import Factors, Lead
 from roughmdr.interaction.jkr.tangent import Mixing, leading
 
-_SLOW = 0.12  # of the error that a step leaves, from where the tangent is factored again
+_SLOW = 0.12  # share of the error that a step leaves, above which the tangent is factored again
 _PATIENCE = 8  # steps with factors of their own, in which the residual has to halve
-_LARGEST_STEP = 0.3  # of a state
+_LARGEST_STEP = 0.3  # largest relative change of a state in one step
 _ROUNDING = 16.0 * np.finfo(np.float64).eps
-_ERROR = 1e-13  # of the natural depth
-_AT_REST = 1e3  # times the error: where rounding lets no step go further
+_ERROR = 1e-13  # error of an equilibrium, over the natural depth
+_AT_REST = 1e3  # residual over _ERROR that counts as rest where rounding lets no step go further
 
 
 def tolerance(problem: PairProblem, state: State) -> float:

@@ -11,7 +11,7 @@ from roughmdr.numerics.arguments import Floats
 from roughmdr.numerics.underway import each_step
 from roughmdr.shapes import SHAPES
 
-_ABOVE = 1e-9  # of the side of the patch: from so far above first touch the flat comes at least
+_ABOVE = 1e-9  # height above first touch, over the side of the patch, at which a path begins at the latest
 
 
 def solve_path(

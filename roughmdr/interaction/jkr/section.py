@@ -21,9 +21,9 @@ from roughmdr.interaction.jkr.tension import slope
 from roughmdr.loading.machine import Machine
 
 _MAX_ROUNDS = 100
-_RTOL = 1e-13  # of the natural depth: a shorter step is the last
-_PEAK_RTOL = 1e-8  # of the slope at a peak, which is off by the square of that
-_BEYOND = 2.0  # times its slope at the beginning the demand grows at most
+_RTOL = 1e-13  # length of the last step, over the natural depth
+_PEAK_RTOL = 1e-8  # slope at a peak, relative; the value there is off by its square
+_BEYOND = 2.0  # largest growth of the demand, over that by its slope at the beginning
 
 
 class Climb(NamedTuple):

@@ -13,7 +13,7 @@ from roughmdr.interaction.jkr.tangent import Tangent
 
 _MAX_ROUNDS = 30
 _SLOPE_RTOL = 1e-10
-_RTOL = 1e-7  # of the slope of the force at its least, which is off by the square of that
+_RTOL = 1e-7  # slope of the force at its minimum, relative; the value there is off by its square
 
 
 class Tension(NamedTuple):

@@ -16,7 +16,7 @@ class Source(NamedTuple):
 
     variable: str
     dimension: str
-    """Of the quantity, as ``UnitSystem.of`` names it."""
+    """SI unit of the variable, as ``UnitSystem.of`` takes it."""
     per_area: bool
     """Whether the variable is a total, to be divided by the nominal area."""
 
@@ -60,7 +60,7 @@ class Law(NamedTuple):
     value: Floats
     """In the dimension of its source, in SI: [step]."""
     standard_error: Floats
-    """Of ``value`` over the realisations, NaN of one: [step]."""
+    """Standard error of ``value`` over the realisations, NaN of one: [step]."""
     realizations: int
     """Number of which it is the mean; 0 of an expected law."""
     scene: str

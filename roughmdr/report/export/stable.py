@@ -28,7 +28,7 @@ class StablePart(NamedTuple):
     value: Floats
     """[point]."""
     standard_error: Floats
-    """Of ``value``: [point]."""
+    """Standard error of ``value``: [point]."""
     datum: float
     """Separation of zero overclosure [m]."""
     rule: str

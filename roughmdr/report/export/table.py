@@ -30,7 +30,7 @@ class Table(NamedTuple):
     error: float
     """Largest interpolation error, by thinning and between the steps, with jumps, over the largest value."""
     relative_error: float
-    """Likewise over the value itself, where that is in the upper decade."""
+    """Largest error over the value itself, where that is in the upper decade."""
     statistical_error: float
     """Largest standard error over the largest value; NaN of a single realisation."""
     departure: float

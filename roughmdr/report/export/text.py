@@ -28,7 +28,7 @@ class Document(NamedTuple):
     """A table with all that is said about it, in the units asked for."""
 
     quantity: str
-    """As ``--quantity`` names it."""
+    """Name that ``--quantity`` takes."""
     header: dict[str, str]
     """Names and texts."""
     columns: tuple[Column, ...]

@@ -15,9 +15,9 @@ from roughmdr.shapes.pieces import ROWS
 from roughmdr.shapes.tabulated.abel import integrals
 from roughmdr.shapes.tabulated.lookup import DEGREE, ELASTIC, HEIGHT, KNOT, PIECE, SCALE, elastic_integral_between
 
-_RTOL = 3e-15  # of the largest value on a piece: what the last coefficients may leave
+_RTOL = 3e-15  # error by the last coefficients, over the largest value on a piece
 _NOISE = 1e-11  # an error below this that halving the piece does not lower is rounding
-_MIN_HALF_LENGTH = 2.0**-20  # of a piece, relative to the interval between two knots
+_MIN_HALF_LENGTH = 2.0**-20  # least half length of a piece, over the interval between two knots
 _OCTAVES_BEYOND = 2  # beyond the last knot, until the far field is right: 16^-14 is below rounding
 _SAMPLES = 8  # on each piece, in the search for where sqrt(a) g' falls
 _MIN_FALL = 1e-9  # a smaller fall is rounding

@@ -15,10 +15,10 @@ from roughmdr.shapes.base import check_radii
 from roughmdr.shapes.tabulated import lookup
 
 _MIN_POINTS = 3
-_MIN_SPACING = 1e-6  # of the last radius: nearer points leave no digits to the spline between them
+_MIN_SPACING = 1e-6  # least spacing, over the last radius: nearer points leave no digits to the spline
 _MAX_LENGTH = 1e100  # [m], so that the squares of radii and heights are floats
-_RTOL_CHORD = 4 * np.finfo(float).eps  # of a chord's slope, from the rounding of the points
-_NOISE = 1e-9  # of the largest slope of g: one that is below 0 by less is rounding
+_RTOL_CHORD = 4 * np.finfo(float).eps  # relative error of a chord's slope by the rounding of the points
+_NOISE = 1e-9  # negative slope of g, over its largest slope, that is rounding
 
 
 class Tabulated(SharedProfile):
