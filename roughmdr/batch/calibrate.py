@@ -25,7 +25,7 @@ _PARTS = (
 )  # asperities and steps of a part; time and memory grow in proportion
 _RIGHT_TO = 3.0  # factor to which the costs of ``costs`` are right: small parts may be lost in the noise of the clock
 _LONG = 0.5  # seconds of a first run that is not repeated for the sake of the clock
-_REPEATS = 10  # of the last part
+_REPEATS = 10  # number of times that the last part is measured
 _MARGIN = 2.5  # runs of a part for which there must be time left: one with the memory traced
 
 

@@ -17,9 +17,9 @@ from roughmdr.variables import LOSSES
 
 START_UP = 1.2
 """Seconds of ``roughmdr run`` for a scene of one asperity, once its kernels are compiled: 1.1 to 1.3 s of one core."""
-_RUN, _DRAW = 1.5e-4, 2e-7  # to begin a run; to draw and sort an asperity
-_STRATIFY = 8e-4  # to begin stratified draws
-_VISIT, _VISIT_PROFILE, _VISIT_DUGDALE = 5e-9, 4e-8, 8e-8  # of an asperity at a step
+_RUN, _DRAW = 1.5e-4, 2e-7  # seconds to begin a run; to draw and sort an asperity
+_STRATIFY = 8e-4  # seconds to begin stratified draws
+_VISIT, _VISIT_PROFILE, _VISIT_DUGDALE = 5e-9, 4e-8, 8e-8  # seconds of an asperity at a step
 _VISIT_DUGDALE_PROFILE, _VISIT_DUGDALE_TABLE = 9e-7, 2e-5
 _ENERGETIC = 10.0  # factor on a visit where energies are asked for: 6 to 17 (spheres, truncated cones); paraboloids 1.1
 _FIRST_RULE, _MORE_NODES = 8, 1.5  # with the first rule's nodes to this power, an expected law takes longer
@@ -41,7 +41,7 @@ _ELASTIC, _JKR, _DUGDALE = (
     _Law(1.2e-2, 5e-5, 1.8e-3, 1e-5),
     _Law(1.5e-2, 1e-4, 5e-2, 2e-4),
 )
-_PARABOLOIDS, _HEIGHTS_DEPEND = 0.3, 6.0  # times as long for a node
+_PARABOLOIDS, _HEIGHTS_DEPEND = 0.3, 6.0  # factors on the seconds of a node
 _SOUGHT, _SOUGHT_PAIRS, _SOUGHT_ADHERING = 2.5, 17.0, 3.6
 """How many times as long a path takes whose separations are sought: 2.3 to 2.8 (2000 and 20 000 paraboloids), 14 to 20
 (100 to 1600 in pairs, under a pressure), 3.6 (median of 150 ensembles of 2 to 8 adhesive pairs)."""
@@ -49,14 +49,14 @@ _JUMP, _JUMP_VISITS, _JUMP_VISITS_PROFILE = 3e-5, 4.0, 24.0
 """Seconds for each contact whose jump on a machine is located, and visits that it takes of each other contact: of
 paraboloids 1.6 to 5.4 (2000 to 7600 contacts), of spheres 23 to 27 (190 to 2700), on each leg."""
 _HEIGHTS = 1000  # asperities that are drawn to tell which share touches
-_MEAN_FIELD_PASSES = 6  # times as long as independent asperities, by Newton's method with all steps at once
+_MEAN_FIELD_PASSES = 6  # factor on independent asperities: Newton's method takes all steps at once
 # Asperities that feel each other in pairs: to begin, each separation of the path (which is solved once), and for each
 # of the asperities there (``pipelines/study.py coupling``).
 _PAIRWISE_BEGIN, _PAIRWISE_STEP, _PAIRWISE_VISIT = 5e-2, 5e-3, 1.5e-5
 # With adhesion: a step of the path, and each contact that is made and lost, the longer the more asperities there are.
 _ADHERING_STEP, _ADHERING, _ADHERING_SQUARE = 1.1e-3, 3.7e-3, 7.5e-9
-_GRID_STEP = 1.2  # of boundary elements, should they be needed
-_FIND_HILL = 2e-3  # of a hill, where each realisation has a map of its own
+_GRID_STEP = 1.2  # seconds of a separation by boundary elements, should they be needed
+_FIND_HILL = 2e-3  # seconds to find a hill, where each realisation has a map of its own
 _NUMBER = 8  # bytes
 _ASPERITY = 110  # bytes of an asperity: of a paraboloid, drawn and summed with JKR, 86 to 105 were measured
 _PAIRED_ASPERITY = 2000  # bytes where they feel each other in pairs: a million took 2.0 GB

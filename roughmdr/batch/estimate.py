@@ -18,7 +18,7 @@ BUDGET = 1.0
 """Seconds that a calibration may take."""
 _MAX_CELLS = 12
 _DISK = 3e8  # bytes a second: a slow disk
-_STEP_SECONDS = 3e-6  # of a step of the path itself
+_STEP_SECONDS = 3e-6  # seconds of a step of the path itself
 
 
 class Estimate(NamedTuple):

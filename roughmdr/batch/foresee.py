@@ -19,7 +19,7 @@ from roughmdr.variables import LATERAL
 _MAX_ASPERITIES = 1000
 _MAX_STEPS = 60
 _MAX_PAIRED, _MAX_PAIRED_STEPS = 200, 12  # where asperities feel each other in pairs, which takes longer
-_MAX_CELLS, _MAX_CHECKED = 12, 100  # to foresee, to check before a run
+_MAX_CELLS, _MAX_CHECKED = 12, 100  # most cells to foresee, and to check before a run
 
 
 class Foreseen(NamedTuple):

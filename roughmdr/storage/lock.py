@@ -17,7 +17,7 @@ _NO_LOCKS = (errno.ENOSYS, errno.EOPNOTSUPP, errno.ENOLCK)
 """Errors of disks without locks, such as some that a cluster shares: there nobody is kept out."""
 _FLAGS = os.O_NOFOLLOW | os.O_NONBLOCK
 """Flags to open a lock with: no link to another place is followed, and no pipe is waited for."""
-_ATTEMPTS, _PAUSE = 10, 0.02  # to get a lock, which ``holder_of`` takes for a moment; time between them [s]
+_ATTEMPTS, _PAUSE = 10, 0.02  # attempts to get a lock, which ``holder_of`` takes for a moment; pause between them [s]
 _HOLDER = re.compile(r"process (\d+) on (.*)")
 
 
