@@ -33,7 +33,7 @@ class Done(NamedTuple):
     name: str
     seconds: float
     text: str
-    """What it printed; nothing where it failed."""
+    """Printed report; empty where the study failed."""
 
     @property
     def row(self) -> list[str]:

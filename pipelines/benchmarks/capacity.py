@@ -24,11 +24,11 @@ from roughmdr.batch.tasks import split_into_tasks
 from roughmdr.loading.pull_off import PullOff
 
 ASPERITIES, CELLS, WORKERS = 1_000_000_000, 1000, 100
-"""Of a cell; cells; workers of one thread."""
+"""Asperities of a cell; cells; workers of one thread."""
 ENSEMBLE = 1_000_000
 """Asperities of a realisation."""
 PREFIX = "large_"
-"""Of the attributes of a result that are extrapolated."""
+"""Beginning of the attributes of a result that are extrapolated."""
 _REPEATS = 30
 
 

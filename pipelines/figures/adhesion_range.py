@@ -17,17 +17,17 @@ from studies.study import Study, named
 import roughmdr as rm
 from roughmdr.aggregate.tabor import SHIFT
 
-MODULUS, WORK, RADIUS = 4e6, 0.05, 50e-6  # of a soft rubber against a rigid body [Pa], [J/m^2], [m]
+MODULUS, WORK, RADIUS = 4e6, 0.05, 50e-6  # a soft rubber against a rigid body [Pa], [J/m^2], [m]
 TIP = rm.Paraboloid(radius=RADIUS)
 SHOWN = (0.1, 0.5, 1.0, 5.0)  # Tabor numbers of the curves
 NUMBERS = np.logspace(-3.0, 3.0, 61)
 TABOR_NUMBERS, ASPERITIES = {False: NUMBERS.size, True: 3}, {False: 5000, True: 300}
 ROUGH_NUMBERS = np.array([1.0, 3.0, 10.0, 30.0, 100.0])
 RATIOS = (0.1, 0.3, 1.0, 3.0, 10.0)  # std of the heights over the depth of the JKR pull-off
-STOPS = (2.0, 0.0, -1.0)  # of the flat, in std
+STOPS = (2.0, 0.0, -1.0)  # lowest separations of the flat, in std
 STEPS = 200
 CONTROLS: tuple[Literal["force"], Literal["displacement"]] = ("force", "displacement")
-_TINY = 1e-300  # in place of no force at all
+_TINY = 1e-300  # replaces no force at all on logarithmic axes
 _MATERIAL: Any = {"effective_modulus": MODULUS, "work": WORK}
 
 

@@ -17,8 +17,8 @@ import roughmdr as rm
 from roughmdr.numerics.arguments import Floats
 from roughmdr.shapes import Shape
 
-MODULUS, WORK = 4e6, 0.05  # of a soft rubber against a rigid body [Pa], [J/m^2]
-SLOPE, RADIUS, FLAT = 0.2, 50e-6, 10e-6  # of the cone [1], the paraboloid [m], the flat punch [m]
+MODULUS, WORK = 4e6, 0.05  # a soft rubber against a rigid body [Pa], [J/m^2]
+SLOPE, RADIUS, FLAT = 0.2, 50e-6, 10e-6  # cone [1], paraboloid [m], flat punch [m]
 SHAPES: dict[str, Shape] = {
     "cone": rm.Cone(slope=SLOPE),
     "paraboloid": rm.Paraboloid(radius=RADIUS),
@@ -35,7 +35,7 @@ CONTROLS: tuple[Control, ...] = ("displacement", "force")
 COURSES = ("loading", "unloading", "unstable")
 PRESSED = 2.0  # contact radius of the two steps, over that at first touch
 INSIDE, SPRINGS = 8, 12  # springs from the middle to the edge of the contact, and to the end of the row
-WIDTH = 10e-6  # of the power laws whose exponent is varied [m]
+WIDTH = 10e-6  # width of the power laws whose exponent is varied [m]
 STRETCHES = (0.3, 1.0, 3.0)  # dl(width) over their rise
 SHARPEST, FLATTEST = 1.0, 100.0  # exponents
 POINTS, QUICK = 121, 41

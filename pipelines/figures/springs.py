@@ -21,8 +21,8 @@ from roughmdr.numerics.arguments import Floats
 from roughmdr.shapes import Shape
 from roughmdr.springs import Springs
 
-MODULUS, WORK = 4e6, 0.05  # of a soft rubber against a rigid body [Pa], [J/m^2]
-RADIUS = 50e-6  # of the asperity whose row is drawn [m]
+MODULUS, WORK = 4e6, 0.05  # a soft rubber against a rigid body [Pa], [J/m^2]
+RADIUS = 50e-6  # radius of the asperity whose row is drawn [m]
 DRAWN = 20  # springs on each side of it
 _TABLE = np.linspace(0.0, 40e-6, 21)
 SHAPES: dict[str, Shape] = {

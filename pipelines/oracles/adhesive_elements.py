@@ -15,11 +15,11 @@ from scipy.fft import irfft2, rfft2
 from roughmdr.errors import OutOfRange
 from roughmdr.numerics.arguments import Floats
 
-_RTOL = 1e-3  # of the strength: the largest traction out of balance
-_RTOL_MEAN = 1e-4  # of the mean attraction: the mean traction out of balance
-_RTOL_FAR = 1e-9  # of the strength: the mean attraction that no longer counts
-_RTOL_PLANE = 1e-4  # of the range: the displacement of the mean plane
-_LARGEST_STEP = 1.0  # of the range, of gaps within _NEAR ranges
+_RTOL = 1e-3  # largest traction out of balance, over the strength
+_RTOL_MEAN = 1e-4  # mean traction out of balance, over the mean attraction
+_RTOL_FAR = 1e-9  # mean attraction that no longer counts, over the strength
+_RTOL_PLANE = 1e-4  # displacement of the mean plane, over the range
+_LARGEST_STEP = 1.0  # largest change of gaps within _NEAR ranges, over the range
 _NEAR = 8.0
 _FAR = 40.0  # ranges: exp(-40) is 4e-18
 _MAX_ITERATIONS = 5000

@@ -26,7 +26,7 @@ from roughmdr.numerics.arguments import Floats
 _RTOL_FORCE = 1e-7  # the largest change of the force over an iteration at the end
 _RTOL_OVERLAP = 1e-6  # and the overlap that is left, over the deepest one
 _MAX_ITERATIONS = 2000  # next to full contact; elsewhere some 50
-_EDGE_SHARE = (math.pi - 1.0 + math.log(2.0)) / 24.0  # of the cells' sides at the edge (Yastrebov et al.)
+_EDGE_SHARE = (math.pi - 1.0 + math.log(2.0)) / 24.0  # share of cells a side at the edge (Yastrebov et al.)
 
 
 class Pressed(NamedTuple):

@@ -14,7 +14,7 @@ Floats = NDArray[np.float64]
 
 _HEIGHTS, _HIGHEST = 200, 10.0  # points of the integral over heights, and the highest, in standard deviations
 _SIDE = 120  # points of the integral on each side of a ring
-_FINE = 1e-13  # of the standard deviation
+_FINE = 1e-13  # tolerance, over the standard deviation
 
 
 def layer_pressure(s: Floats, modulus: float, radius: float, std: float, density: float) -> Floats:

@@ -19,7 +19,7 @@ from oracles.multiprecision import Number, mp, tanh_sinh
 from oracles.profiles import Piece, Profile
 
 Array = NDArray[Any]
-"""Of doubles, or of numbers of any precision."""
+"""Array of doubles, or of numbers of any precision."""
 STEPS = 64
 FIELDS = {"contact_radius": "a", "cohesive_radius": "c", "indentation": "delta", "force": "force"}
 """The fields of a state by the names of results."""

@@ -13,7 +13,7 @@ from oracles.profiles import Floats, Profile
 
 WORKING = 55
 DIGITS = 45
-"""Of the integrals; the folds are right to a few less."""
+"""Digits of the integrals; the folds are right to a few less."""
 CONTROLS = ("displacement", "force")
 NEAREST = 1e-9
 """A state closer to its fold is left out: a double does not distinguish it from the fold."""

@@ -16,8 +16,8 @@ from roughmdr.spectrum import SelfAffine
 _EDGE = 1e-9  # waves as long as a limit of the spectrum count as within it, whatever their rounding
 DERIVATIVES = ((1, 0), (0, 1), (2, 0), (1, 1), (0, 2))
 """Orders along x and y of the derivatives that determine a summit."""
-_STEPS = 8  # of Newton's method, from a point of a fine grid to the nearest summit
-_RESOLUTION = 1e-6  # of the spacing of the grid: nearer summits are one
+_STEPS = 8  # steps of Newton's method, from a point of a fine grid to the nearest summit
+_RESOLUTION = 1e-6  # distance of two summits, over the spacing of the grid, below which they are one
 
 
 def gaussian_map(spectrum: SelfAffine, points: int, size: float, seed: int) -> Floats:

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 Floats = NDArray[np.float64]
 _SAMPLES = 150
-_BESIDE = 1e-13  # of the depth of detachment, on either side of an event
+_BESIDE = 1e-13  # distance to an event on either side, over the depth of detachment
 
 
 def stable_root(x: Floats) -> Floats:

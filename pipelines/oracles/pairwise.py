@@ -18,8 +18,8 @@ from roughmdr.numerics.arguments import Floats
 _RTOL = 1e-9
 _MAX_SWEEPS = 2000
 _RTOL_RADIUS, _TINY = 1e-13, 1e-300
-_DOUBLINGS = 4  # of the radius, until it is an upper bound
-_CELLS = 4  # of images and of waves on either side; the sums of Ewald have 15 digits then
+_DOUBLINGS = 4  # most doublings of the radius until it is an upper bound
+_CELLS = 4  # images and waves on either side: the sums of Ewald have 15 digits
 
 
 def periodic_green(x: Floats, y: Floats, size: float, effective_modulus: float) -> Floats:

@@ -12,7 +12,7 @@ from oracles.mapped_disc import Complexes
 from oracles.two_contacts import DEGREE, Contact, Indenter, press
 from roughmdr.numerics.arguments import Floats
 
-_CELLS = 3  # of images and of waves on either side; the sums of Ewald have 14 digits at the contact then
+_CELLS = 3  # images and waves on either side: the sums of Ewald have 14 digits at the contact
 _SPLIT = math.sqrt(math.pi)
 
 

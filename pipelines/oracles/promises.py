@@ -12,7 +12,7 @@ Results = Mapping[str, float]
 """The variables of ``rm.indent`` for one contact, by name."""
 UNIT = mp.mpf(2) ** -53
 _MIN, _MAX = mp.mpf("1e-299"), mp.mpf("1e299")
-_ROUNDINGS = 32 * UNIT  # of the control and the two terms that it is the difference of, with adhesion of finite range
+_ROUNDINGS = 32 * UNIT  # error of the control and of its two terms, with adhesion of finite range
 
 
 class Judged(NamedTuple):

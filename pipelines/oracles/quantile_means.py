@@ -17,10 +17,10 @@ from roughmdr.numerics.arguments import Floats
 
 _END = 37.0  # normal score beyond which no double holds the probability
 _END_NUMERICAL = 8.0  # where scipy finds the inverse numerically: from 1 - p, which has no digits beyond
-_HALVINGS, _RTOL = 40, 1e-14  # of a panel; of the mean
+_HALVINGS, _RTOL = 40, 1e-14  # most halvings of a panel; relative tolerance of the mean
 _MAX_PANELS = 1_000  # halved at once: more of them disagree by roundings
 _MAX_NUMERICAL = 100  # where inverses are found numerically, slowly and with noise
-_END_OF_SCORES = 8.5  # of two correlated quantities
+_END_OF_SCORES = 8.5  # largest score of two correlated quantities
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(12)
 _FINE_NODES, _FINE_WEIGHTS = np.polynomial.legendre.leggauss(20)
 

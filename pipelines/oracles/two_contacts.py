@@ -19,7 +19,7 @@ from roughmdr.numerics.arguments import Floats
 
 DEGREE = 8
 _MAX_ITERATIONS, _MAX_SWEEPS = 30, 60
-_DIFFERENCE = 1e-5  # of a coefficient of the edge, for a derivative
+_DIFFERENCE = 1e-5  # step of a coefficient of the edge, for a derivative
 _RTOL_STEP, _RTOL_FORCE = 1e-11, 1e-14
 
 Displacement = Callable[[Complexes], Floats]
@@ -51,7 +51,7 @@ class Contact(NamedTuple):
     amplitudes: Floats
     position: Complexes
     load: Floats
-    """Of the points of a quadrature at ``position``."""
+    """Loads of the points of a quadrature at ``position``."""
     residual: float
     """The largest error of the displacement in the contact, over the approach."""
 

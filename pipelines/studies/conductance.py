@@ -26,11 +26,11 @@ if TYPE_CHECKING:
 
 COUPLED = {f"order {order}": pairs for order, pairs in PAIRS.items()}
 MODELS: dict[str, Any] = {"independent": None, "mean field": "mean_field", **COUPLED}
-_MAP_POINTS = 16  # of a map a shortest wave
+_MAP_POINTS = 16  # points of a map a shortest wave
 FRACTIONS = np.array([0.001, 0.003, 0.01, 0.03, 0.06, 0.1])
 """Contact fractions by boundary elements, about."""
 _SEARCHED, _COARSER = 16, 4  # separations at which these are looked for, on a grid so much coarser
-_DIFFERENCE = 0.02  # of the separation, over the depth of the flat below the highest summit
+_DIFFERENCE = 0.02  # change of the separation, over the depth of the flat below the highest summit
 _WORKERS = 2
 _LAW = ("conductance_radius", "contact_fraction", "conductance_error", "overlap_fraction")
 _ELEMENTS = {

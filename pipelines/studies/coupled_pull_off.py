@@ -20,9 +20,9 @@ RADIUS = 50e-6  # [m]
 JUMP_ON_RADIUS = (2.0 * math.pi * WORK * RADIUS**2 / MODULUS) ** (1.0 / 3.0)  # [m], of a contact alone
 PULL_OFF_LENGTH = 0.75 * 4.0 ** (-1.0 / 3.0) * JUMP_ON_RADIUS**2 / RADIUS  # [m], how far a contact alone is stretched
 PULL_OFF_FORCE = 1.5 * math.pi * WORK * RADIUS  # [N], of a contact alone
-_DEPTH = 1.5  # of the pull-off length, below the mean height at closest approach
-_CLEAR = 2.0  # of the pull-off length, above the highest summit at both ends
-_LEAST_DISTANCE = 0.7  # of the mean distance
+_DEPTH = 1.5  # depth below the mean height at closest approach, in pull-off lengths
+_CLEAR = 2.0  # height above the highest summit at both ends, in pull-off lengths
+_LEAST_DISTANCE = 0.7  # least distance over the mean distance
 STEPS = 30
 USUAL = {False: (100, 10.0), True: (36, 10.0)}
 """Number of asperities where the distance varies, and distance where the number does."""

@@ -32,7 +32,7 @@ class Study(NamedTuple):
     report: Callable[[xr.Dataset], str]
     """Return a few sentences and tables in Markdown."""
     reduced: str
-    """What the reduced form has of the full one."""
+    """Part of the full form that the reduced one has."""
 
     def carry_out(self, output: Path, quick: bool) -> str:
         """Measure, write all files to the folder ``output``, and return the report; all say where they are reduced."""

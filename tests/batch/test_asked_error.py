@@ -44,7 +44,7 @@ def asking(relative: float, method: str | None = "sampled", most: int | None = N
 
 
 def methods(found: xr.Dataset) -> list[str]:
-    """Of each cell."""
+    """Return the method of each cell."""
     names = found.accuracy_method.attrs["flag_meanings"].split()
     return [names[method] for method in np.atleast_1d(found.accuracy_method)]
 
@@ -132,7 +132,7 @@ def test_each_cell_has_the_method_that_fits_it() -> None:
 
 
 def made(table: dict[str, Any], monkeypatch: pytest.MonkeyPatch) -> tuple[xr.Dataset, list[tuple[str, int]]]:
-    """What is found, and the runs that were made for it."""
+    """Return the result, and the runs that were made for it."""
     runs, run = list[tuple[str, int]](), tasks._run
 
     def counting(part: tasks.RunRange, realization: int, names: Any) -> Any:
@@ -199,7 +199,7 @@ def test_an_expected_law_that_is_nearer_than_all_draws_is_kept_where_neither_is_
 
 @pytest.mark.parametrize(("density", "method"), [("50 /mm^2", "stratified"), ("33 /mm^2", "sampled")])
 def test_asperities_whose_number_would_be_rounded_are_drawn_one_by_one(density: str, method: str) -> None:
-    """Of 33 on 0.04 mm^2 there are 1.32 on average, and 1 would be another surface."""
+    """There are 1.32 of 33 on 0.04 mm^2 on average, and 1 would be another surface."""
     few = {**{key: value for key, value in FEW.items() if key != "count"}, "density": density, "patch": "0.2 mm"}
     assert methods(go(asking(0.9, None, FIRST, asperities={**few, "height": "0 um"}))) == [method]
 
@@ -433,7 +433,7 @@ def test_results_with_missing_realisations_can_be_looked_at(keep: str, tmp_path:
 @pytest.mark.large
 @pytest.mark.parametrize("name", SCENES)
 def test_the_error_is_met_and_little_is_wasted(name: str) -> None:
-    """Of 100 runs 95 come to the error that was asked for; half of them with few more than the fewest realisations."""
+    """In 95 of 100 runs the error that was asked for is met; half take few more than the fewest realisations."""
     samples = force_samples(name, 8000)
     taken = realizations_taken(samples, samples.true_error(500), seeds=100)
     assert np.mean(taken >= 500) >= 0.95

@@ -91,7 +91,7 @@ def test_the_bits_of_stratified_draws_hang_on_seed_and_realisation_alone() -> No
 
 
 def rms(estimator: str, count: int, exact: xr.DataArray, **changes: Any) -> float:
-    """Of 16 realisations over the path, over the largest force; forces of an asperity."""
+    """Return the r.m.s. error of 16 realisations along the path, over the largest force of an asperity."""
     found = run(estimator, realizations=16, asperities=asperities(count=count), **changes).force / count
     return float(np.sqrt(((found - exact) ** 2).mean()) / np.abs(exact).max())
 

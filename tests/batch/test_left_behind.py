@@ -1,4 +1,4 @@
-"""What a run finds at its output that is not its own: another result, files at the place of its parts, odd results."""
+"""Runs find at their output what is not their own: another result, files at the place of its parts, odd results."""
 
 import os
 import sqlite3

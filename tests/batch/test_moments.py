@@ -127,7 +127,7 @@ def test_there_is_no_total_where_one_is_missing(count: int, missing: int) -> Non
 
 @pytest.mark.parametrize("last", [1, 2, 255, 256, 1000])
 def test_few_blocks_are_held(last: int) -> None:
-    """As many as the number has binary digits, where realisations come in order."""
+    """There are as many as the number has binary digits, where realisations come in order."""
     tree = MomentTree()
     for count in range(1, last + 1):
         tree.add(count - 1, Moments.of(np.array([float(count)])))

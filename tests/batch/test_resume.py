@@ -51,7 +51,7 @@ class Calls:
         self.fails: Callable[[float, int], bool] = lambda work, number: False
 
     def taken(self) -> list[tuple[float, int]]:
-        """Those since the last time, in order."""
+        """Return the runs since the last call, in order."""
         done, self.done = sorted(self.done), []
         return done
 

@@ -326,7 +326,7 @@ def test_summits_of_gaussian_surfaces_against_nested_quadrature() -> None:
 
 
 def test_each_parameter_has_as_many_scores_as_it_needs() -> None:
-    """Those of the flat, on which the depth of detachment depends most, are more than those of the slope."""
+    """The flat, on which the depth of detachment depends most, has more than the slope."""
     case = CASES[5]
     separation = np.array([3.0 * UM, TURN, *(TURN + rise for rise in rises_of(case))])
     chosen, _ = converge_at_kinks(problem_of(case, separation), dissipating=False)
@@ -375,7 +375,7 @@ def test_the_error_falls_exponentially_with_the_order() -> None:
 
 
 def test_the_energy_lost_is_that_of_many_draws_of_the_depth() -> None:
-    """Of paraboloids: the energies of jumps times the fractions that made them, by a fine rule over the radius."""
+    """Paraboloids lose the energies of jumps times the fractions that made them, by a fine rule over the radius."""
     case = CASES[0]
     path = [3.0 * UM, TURN, *(TURN + rise for rise in rises_of(case)), 3.0 * UM]
     asked = made_of(case, path, output={"variables": ["force", "dissipated_energy"]})

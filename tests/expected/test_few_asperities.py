@@ -18,7 +18,7 @@ from roughmdr.expected.heights import HeightTable
 from roughmdr.scene import read
 
 Floats = NDArray[np.float64]
-AREA = 1e-6  # of the patch [m2]
+AREA = 1e-6  # area of the patch [m2]
 DOWN = np.linspace(4e-6, -0.5e-6, 30)
 THERE_AND_BACK = np.concatenate([DOWN, DOWN[::-1]])
 DUGDALE = {"model": "dugdale", "work": "50 mJ/m^2", "strength": "0.3 MPa"}
@@ -76,7 +76,7 @@ def summed(table: Any, shape: str, separation: Floats, **material: Any) -> tuple
 def test_the_sum_over_the_nodes_is_the_expected_law(
     changes: dict[str, Any], material: dict[str, Any], error: float, tmp_path: Path
 ) -> None:
-    """Of a result, at the steps of its path and between them, loading and unloading, read from the file."""
+    """The result is read from its file, at the steps of its path and between them, loading and unloading."""
     separation = THERE_AND_BACK
     path = {"separation": separation.tolist()}
     made = scene(**{"path": path, "batch": {"estimator": "expected"}} | changes)

@@ -53,7 +53,7 @@ def test_the_judge_finds_forces_that_are_off_by_a_few_stated_errors(number: int)
 
 
 def test_orders_that_agree_by_chance_are_not_accepted() -> None:
-    """Of punches of many radii some have detached: there are kinks over the radii."""
+    """Some punches of many radii have detached: there are kinks over the radii."""
     assert study.judge(scene(44)).honest
 
 

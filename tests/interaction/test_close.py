@@ -36,7 +36,7 @@ def test_two_punches_against_a_double_integral(s: float, t: float, away: float) 
 
 
 def test_the_compliance_is_that_of_punches_that_are_one() -> None:
-    """As the distance goes to none a punch is displaced by itself: π/(2 a), over π E* 1/(2 E* a)."""
+    """A punch is displaced by itself as the distance goes to none: π/(2 a), over π E* 1/(2 E* a)."""
     assert close.punches(0.7, 0.7, 1e-12) == pytest.approx(0.5 * math.pi / 0.7, rel=1e-9)
     assert close.punches(0.2, 0.7, 1e-12) == pytest.approx(0.5 * math.pi / 0.7, rel=1e-9)
 
@@ -74,7 +74,7 @@ def gram(at: Floats, radius: Floats) -> Floats:
 @settings(deadline=None, max_examples=60)
 @given(st.integers(2, 25), st.floats(0.0, 6.0), st.floats(0.01, 3.0), st.integers(0, 2**32 - 1))
 def test_compliances_and_couplings_are_positive_definite(count: int, decades: float, spread: float, seed: int) -> None:
-    """Of clusters of any overlap and radii: a Gram matrix."""
+    """The matrix of clusters of any overlap and radii is a Gram matrix."""
     rng = np.random.default_rng(seed)
     radius = 10.0 ** rng.uniform(-decades, 0.0, count)
     at = spread * rng.normal(size=(count, 2))

@@ -69,7 +69,7 @@ def test_two_contacts_are_off_as_their_order_is(distance: float) -> None:
 
 
 def test_the_error_falls_with_the_order() -> None:
-    """As the third power of radius over distance, and as the fifth."""
+    """It falls as the third power of radius over distance, and as the fifth."""
     for order, power, near in ((1, 3, 0.2), (2, 5, 0.3)):
         errors = []
         for distance in (16.0, 32.0):
@@ -168,7 +168,7 @@ def test_to_first_order_it_is_the_stiffness(boundary: str, count: int) -> None:
 
 
 def test_to_second_order_it_is_the_stiffness_too() -> None:
-    """Of contacts that slide to the new top, and whose pressure has a moment there."""
+    """The contacts slide to the new top, and their pressure has a moment there."""
     asked = {"model": "pairwise"}
     law = rm.load_separation(random(60), separation=[2.5e-6, 1.5e-6], effective_modulus=3e9, interaction=asked,
                              variables=["stiffness", "conductance_radius"])  # fmt: skip

@@ -107,7 +107,7 @@ def test_a_contact_on_a_curved_surface(name: str, x: float, curvature: float) ->
 
 @pytest.mark.parametrize("name", ["paraboloid", "truncated_cone"])
 def test_the_stiffness_is_the_diameter(name: str) -> None:
-    """Of the contact that carries its load alone."""
+    """The diameter is that of the contact that carries its load alone."""
     found, _ = response(EXAMPLES[name], 0.02, 0.0)
     assert found["stiffness"] == pytest.approx(2.0 * found["radius"], rel=1e-12)
 

@@ -40,7 +40,7 @@ def across_the_edge(count: int) -> Points:
 
 
 def loads(count: int, seed: int = 2) -> Floats:
-    """As of contacts: none or positive, over two decades."""
+    """Return loads like those of contacts: none or positive, over two decades."""
     rng = np.random.default_rng(seed)
     return np.where(rng.uniform(size=count) < 0.7, 10.0 ** rng.uniform(-2.0, 0.0, count), 0.0)
 
@@ -86,8 +86,9 @@ def test_where_points_lie_does_not_matter(points: Points, periodic: bool) -> Non
 @pytest.mark.parametrize("error", ERRORS)
 @pytest.mark.parametrize("apart", [0.0, 1e-6, 0.01, 0.5])
 def test_one_or_two_loads_among_many_points(apart: float, error: float, periodic: bool) -> None:
-    """As at first touch: within the error of the displacement at the mean distance of the points, and of its
-    derivatives, by the highest wave of the mesh for each; twice that of the second, which a narrow window aliases.
+    """Loads like those at first touch are right to the error of the displacement at the mean distance of the points,
+    and its derivatives to that times the highest wave of the mesh for each; the second, which a narrow window aliases,
+    to twice that.
     """
     count = 400
     x, y = uniform(count, 1.0)
@@ -136,7 +137,7 @@ def test_it_is_linear_and_symmetric(periodic: bool) -> None:
 @BOUNDARIES
 @pytest.mark.parametrize("points", [uniform(200, 1.0), clustered(200)], ids=["uniform", "clustered"])
 def test_the_least_displacement_is_below_that_at_any_place(points: Points, periodic: bool) -> None:
-    """Of point loads that press; the places are those of asperities that do not touch yet."""
+    """Point loads press; asperities that do not touch yet stand elsewhere."""
     patch = Periodic.of(1.0)
     grid = np.linspace(0.0, 1.0, 41)[:-1] + 0.0061
     x, y = (np.concatenate([p, q.ravel()]) for p, q in zip(points, np.meshgrid(grid, grid), strict=True))

@@ -1,4 +1,4 @@
-"""What a scene does not need is not done, by what the study of it counts."""
+"""Nothing is done that a scene does not need, by the counts of the study."""
 
 from collections.abc import Iterator
 from pathlib import Path
@@ -17,7 +17,7 @@ from roughmdr.variables import DEFAULT_VARIABLES
 
 HERTZ = [name for name, options in SCENES.items() if not options.get("adhesive")]
 JKR = [name for name in SCENES if name not in HERTZ]
-ASPERITIES, RUNS, STEPS = 60, 300, 20  # of the quick form
+ASPERITIES, RUNS, STEPS = 60, 300, 20  # sizes of the quick form
 
 
 class Studied(NamedTuple):

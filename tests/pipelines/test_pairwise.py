@@ -28,7 +28,7 @@ def test_the_greens_function_is_that_of_the_fourier_series() -> None:
 
 @pytest.mark.parametrize(("size", "exact"), [(20.0, 1.145247762211), (12.0, 1.273263599777)])
 def test_a_paraboloid_and_its_images_to_first_order(size: float, exact: float) -> None:
-    """What is left out is of the order of (a/size)^3."""
+    """Terms left out are of the order of (a/size)^3."""
     green = periodic_green(ORIGIN, ORIGIN, size, 1.0)
     force = Paraboloids(ORIGIN, np.ones(1), green, 1.0, 0.0).press(-1.0).force
     assert force == pytest.approx(4.0 / 3.0 * exact, rel=3.0 * size**-3)

@@ -21,7 +21,7 @@ from roughmdr.stages import STAGES
 
 BIB = (Path(rm.__file__).parent / "report/papers.bib").read_text("ascii")
 WITHOUT_DOI = {"Barber2003", "Cattaneo1938", "Mindlin1949", "MindlinDeresiewicz1953", "Jaeger1995", "Masing1926"}
-"""Those whose DOI is not certain, or which have none."""
+"""Papers whose DOI is not certain, or which have none."""
 SOFTWARE = {"Harris2020", "Lam2015", "Virtanen2020", "Hoyer2017", "Rocklin2015"}
 ALWAYS = {"Hess2012", "PopovHess2015", "Sneddon1965", *SOFTWARE}
 GAUSSIAN = {"LonguetHiggins1957", "Nayak1971", "Greenwood2006", "Greenwood1966", "Hertz1882"}

@@ -18,7 +18,7 @@ from roughmdr.storage.labelled import Labelled
 PRESSED = {"separation": {"start": "clear", "stop": "0.5 sigma", "steps": 120}, "unload": True}
 FAR = {"separation": {"start": "clear", "stop": "1 sigma", "steps": 120}, "unload": True}
 DEEP = {"separation": {"start": "clear", "stop": "-0.5 sigma", "steps": 200}, "unload": True}
-AREA = 1e-6  # of the patch [m2]
+AREA = 1e-6  # area of the patch [m2]
 
 
 def expected(**changes: Any) -> dict[str, Any]:

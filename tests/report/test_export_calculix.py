@@ -17,7 +17,7 @@ from roughmdr.storage.labelled import Labelled
 
 pytestmark = pytest.mark.skipif(shutil.which("ccx") is None, reason="there is no CalculiX to read the tables with")
 
-AREA = 1e-6  # of the patch [m2]
+AREA = 1e-6  # area of the patch [m2]
 _DECK = """*NODE, NSET=LOW
 1, -1., -1., 0.
 2, 2., -1., 0.

@@ -177,7 +177,7 @@ def test_the_smallest_floats_and_0_itself_are_numbers() -> None:
 
 @pytest.mark.parametrize("unit", _BASES)
 def test_an_axis_has_numbers_from_1_to_1000(unit: str) -> None:
-    """Of squares to a million; its unit is one that is read, of that size."""
+    """Squares have numbers to a million; the unit is one that is read, of that size."""
     power = abs(POWERS.get(unit, 1))
     for largest in (2.5e-9, 3.1e-4, 0.99, 7.0, 4.5e5):
         size, name = axis_unit(largest, unit)

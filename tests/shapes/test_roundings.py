@@ -1,4 +1,4 @@
-"""What the bound of the error rests on: g and ∫ x g' dx of every profile are right to the roundings that it states."""
+"""The bound of the error rests on this: g and ∫ x g' dx of every profile are right to the roundings that it states."""
 
 import numpy as np
 import pytest

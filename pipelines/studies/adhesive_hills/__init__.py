@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 METHODS = ("summits", "summits in pairs", "hills", "hills in pairs", "hills, Dugdale")
 ELEMENTS = ("elements", "coarse grid", "longer range")
 _COARSE = 2.0 / 3.0
-"""Of the points of a grid."""
+"""Share of the points of a grid."""
 LONGER = 1.5
 """The longer range over the range."""
 _LEAST = 0.003  # contact fraction of boundary elements from which on steps are compared

@@ -13,7 +13,7 @@ from roughmdr.numerics.arguments import Floats
 from studies.comparison import law_or_nan
 from studies.hills.maps import POINTS, SIDE, MapCase, hills_of
 
-_SEARCHED = 0.05  # of the stretch: between separations, among which that of the preload is found
+_SEARCHED = 0.05  # step of the separations among which that of the preload is found, over their stretch
 
 
 class Law(NamedTuple):
@@ -32,11 +32,11 @@ class Case(NamedTuple):
     preload: float
     """The contact fraction of independent hills at closest approach."""
     points: int
-    """Of the grid, a side of a patch with isotropic waves."""
+    """Points of the grid, a side of a patch with isotropic waves."""
     steps: int = 16
     """From clear to closest approach."""
     tabor: float = 2.0
-    """Of a summit of median curvature."""
+    """Tabor number of a summit of median curvature."""
 
 
 class Adhesive:

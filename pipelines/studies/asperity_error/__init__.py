@@ -30,7 +30,7 @@ _MIN_FORCE = 1e-290
 _TRIES = 50
 ASPERITIES, QUICK = 100_000, 480
 _WORKERS, _GROUP_SIZE = 2, 100
-_WEIGHT = {"tabulated": 0.2}  # of a shape, else 1: its reference is slow
+_WEIGHT = {"tabulated": 0.2}  # share of cases of a shape, else 1: its reference is slow
 _MODELS = ("none", "JKR")
 COLUMNS = {
     "shape": {"long_name": "shape of the asperity"},

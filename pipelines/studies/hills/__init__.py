@@ -40,10 +40,10 @@ if TYPE_CHECKING:
 
 COARSE = (2, 3, 4)
 PERSSON = {"Persson, gamma 0.45": 0.45, "Persson, gamma 1": 1.0}
-"""What the theory calls gamma, by the names of its methods; for isotropic maps."""
+"""Factor gamma of the theory by the names of its methods, for isotropic maps."""
 METHODS = ("summits", "summits in pairs", "hills", *PERSSON, *(f"elements, {points} points" for points in COARSE))
 RANGES = ((0.003, 0.01), (0.01, 0.05), (0.05, 0.2))
-"""Of the contact fraction, over which errors are taken together."""
+"""Ranges of the contact fraction over which errors are taken together."""
 _STYLES = dict(
     zip(METHODS, ((colour, marker) for colour, marker in zip(
         ("0.45", "#0072b2", "#d55e00", "#009e73", "#66c2a5", "#e5b8d4", "#cc79a7", "#7b3f61"), "vso^PDDD", strict=True

@@ -23,9 +23,9 @@ QUICK_TRIALS = [MapCase(0.3, 8, 11), MapCase(0.8, 8, 11)]
 GRIDS = (2, 3, 4, 6, 8, 12)
 """Points a shortest wave."""
 FINEST = 24
-"""Of the hills that those of coarser grids are held against."""
+"""Points a shortest wave of the hills that those of coarser grids are compared with."""
 FINEST_ELEMENTS = 32
-"""Of the boundary elements that the fine ones are held against; half as many in the reduced form."""
+"""Points a shortest wave of the elements that the fine ones are compared with; half in the reduced form."""
 SCALES = (5, 10, 20, 40)
 NOISE = (0.01, 0.03, 0.1)
 """White, r.m.s. over the r.m.s. height."""

@@ -17,7 +17,7 @@ from roughmdr.numerics.arguments import Floats
 from studies.comparison import law_or_nan
 
 SIDE = 1e-4
-"""Of the patch [m]."""
+"""Side of the patch [m]."""
 SLOPE = 1e-2
 """r.m.s., small: nothing depends on it."""
 _ROLL_OFF = 2.0  # wave number over that of the side, below which the spectrum is level
@@ -67,7 +67,7 @@ QUANTITIES = tuple(WORDS)
 PAIRS = "pairwise"
 STIFFNESS_EACH = 4
 """Steps from one separation to the next at which elements give the stiffness, which costs them two more solutions."""
-_DIFFERENCE = 1e-4  # of a separation, each way, over itself
+_DIFFERENCE = 1e-4  # change of a separation each way, over itself
 
 
 class Pressed(NamedTuple):
@@ -143,7 +143,7 @@ def by_persson(surface: HeightMap, separation: Floats, gamma: float) -> Pressed:
 
 
 POINTS = 8
-"""Of the map and of the boundary elements that all is held against, a shortest wave."""
+"""Points a shortest wave of the map, and of the boundary elements that all is compared with."""
 FRACTIONS = np.geomspace(0.003, 0.2, 9)
 _POINTS = 4  # a shortest wave, of the elements that look for the separations
 _SEARCHED = 12  # separations, between which those of the fractions are found

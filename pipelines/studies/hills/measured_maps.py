@@ -26,7 +26,7 @@ FOLDER = "ROUGHMDR_SURFACES"
 FILES = ("optical.nc", "afm_film.di")
 FREE_METHODS = ("summits", "summits in pairs", "hills")
 _ALONE = {"model": "pairwise", "boundary": "free"}
-_WAVES, _FEW_WAVES = 32, 12  # of the side of a square, at most; the latter in the reduced form
+_WAVES, _FEW_WAVES = 32, 12  # most waves a side of a square; the latter in the reduced form
 _SEARCHED = 12  # separations, between which those of the fractions are found
 _DIFFERENCE = 0.01  # step of the separation, each way, over the deepest overlap
 

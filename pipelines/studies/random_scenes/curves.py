@@ -11,7 +11,7 @@ from roughmdr.scene import Scene
 
 DONE, _EXPECTED = 0, 2
 ROUNDING = 1e-12
-"""Of a sum, as the kernels are tested."""
+"""Relative rounding of a sum, to which the kernels are tested."""
 FORCES = ("force", "pressure")
 
 

@@ -28,7 +28,7 @@ from studies.random_scenes.numbers import (
     viscoelastic,
 )
 
-_FILE_SIZE = 1e-6  # of the heights in files [m]
+_FILE_SIZE = 1e-6  # scale of the heights in files [m]
 # Powers of ten of shape parameters; of lengths over the size of all.
 FLANK, NARROW, WIDE, ROUND = (-4.0, 0.5), (-1.0, 2.0), (0.0, 3.0), (0.0, 4.0)
 PARAMETERS: dict[str, dict[str, tuple[float, float]]] = {

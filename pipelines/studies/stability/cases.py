@@ -8,8 +8,8 @@ from scipy.stats import qmc
 import roughmdr as rm
 
 SEED = 20260
-ASPERITIES = 3  # in a case
-_WIDTHS = (0.0, -0.5, 0.5)  # of the asperities, in spreads [decades]
+ASPERITIES = 3  # asperities of a case
+_WIDTHS = (0.0, -0.5, 0.5)  # logarithms of the widths of the asperities, in spreads [decades]
 _MARGIN = 0.04  # part of the cases that lies at each end of an axis
 
 

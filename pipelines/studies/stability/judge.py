@@ -18,7 +18,7 @@ from studies.stability.cases import Case
 MODELS = ("elastic", "jkr", "dugdale")
 OUTCOMES = RIGHT, REFUSED, WRONG = ("right", "refused", "wrong")
 CONTROLS = ("indentation", "force", "contact_radius")
-_TINY = 1e-300  # in place of no force at all
+_TINY = 1e-300  # replaces no force at all
 
 
 class Reference:

@@ -16,7 +16,7 @@ from roughmdr.kernels.adhesion import Adhesion
 from roughmdr.numerics.arguments import Floats
 from roughmdr.shapes import SHAPES, Shape
 
-MODULUS, WORK, TABOR = 4.1e6, 0.047, 1.3  # of a soft rubber [Pa], [J/m^2], and where neither DMT nor JKR is right
+MODULUS, WORK, TABOR = 4.1e6, 0.047, 1.3  # a soft rubber [Pa], [J/m^2]; neither DMT nor JKR is right
 KINDS: dict[str, dict[str, float]] = {
     "paraboloid": {"radius": 47e-6},
     "cone": {"slope": 0.13},

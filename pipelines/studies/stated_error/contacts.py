@@ -21,10 +21,10 @@ from scipy.optimize import brentq
 from roughmdr.kernels.adhesion import Adhesion
 from roughmdr.shapes import FlatPunch, Paraboloid, Shape
 
-_DIGITS = 22  # of the integrals with adhesion of finite range
-_TANGENT_RANGE = 1e-8  # of the indentation above the start of a branch, where the tangent is right to its square
-_BEYOND_FOLDS = 16.0  # times the largest contact radius
-_MIN_RADIUS = 1e-20  # over the next: where contacts begin to touch
+_DIGITS = 22  # digits of the integrals with adhesion of finite range
+_TANGENT_RANGE = 1e-8  # indentation above the start of a branch, relative, where the tangent is right to its square
+_BEYOND_FOLDS = 16.0  # largest contact radius that is sought, over that at the last fold
+_MIN_RADIUS = 1e-20  # smallest contact radius, over the next: where contacts begin to touch
 
 
 def branch_numbers(indentations: Iterable[Number], ends: list[tuple[Number, Number]], touch: Number) -> Iterator[int]:

@@ -16,7 +16,7 @@ ADHESIONS = ("none", "jkr", "dugdale")
 COHESIVE = ("paraboloid", "flat_punch", "truncated_cone")
 """Shapes drawn with adhesion of finite range, the last not for the expected curve: each of the others takes half a
 minute to compile, and seconds for its reference."""
-_EXPONENTS = (1, 1.5, 2, 2.5, 3, 4, 6)  # of power series
+_EXPONENTS = (1, 1.5, 2, 2.5, 3, 4, 6)  # exponents of power series
 _LARGEST_WORK = 10.0  # [J/m2]
 
 

@@ -36,14 +36,14 @@ class Case(NamedTuple):
 
     name: str
     scene: Table
-    """As TOML holds it; a map is named map.nc."""
+    """Table that TOML holds; a map is named map.nc."""
     oracle: str
     """pairs, boundary elements (of asperities), map, maps (the mean over several), or none: it is refused."""
     changes: str = ""
     """In which way it differs from the shipped scene of its name."""
     surface: Surface | None = None
     points: int = 512
-    """Of the grid of boundary elements of asperities, a side."""
+    """Points a side of the grid of boundary elements of asperities."""
 
 
 def _shipped(name: str, without: tuple[str, ...] = (), **changes: Any) -> Table:

@@ -18,7 +18,7 @@ from roughmdr.numerics.arguments import Floats
 from studies.trust.scenes import Surface
 from studies.versus_bem.ensembles import distances, height_map, side
 
-_LIFTED = 0.3  # of the deepest overlap: by less than this the pressure of some contacts lifts the surface between them
+_LIFTED = 0.3  # largest lift of the surface between contacts by their pressure, over the deepest overlap
 _LOADING, _UNLOADING = 60, 200  # steps of a path that pairs are taken along
 MAPS = 5
 """Gaussian maps whose mean force is compared with the expected law."""

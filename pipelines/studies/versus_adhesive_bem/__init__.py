@@ -108,7 +108,7 @@ class Judged(NamedTuple):
     area: float
     """The largest of the contact area over the largest area, at such steps."""
     pull_off: float
-    """Of the largest tension on unloading, relative."""
+    """Relative error of the largest tension on unloading."""
     on: float
     """Mean lag of the jumps on over the stretch at which one alone lets go; > 0 where it jumps on at a smaller gap."""
     off: float

@@ -20,7 +20,7 @@ DETACHED = -(3.0 * 0.25 ** (4.0 / 3.0))
 MODELS: dict[str, Any] = {"independent": None, "first": PAIRS[1], "second": PAIRS[2]}
 """Interactions by name; images of the patch are felt by pairs only."""
 _STD_HEIGHT, _STD_RADIUS = 0.15, 0.1
-_LEAST_DISTANCE = 0.7  # of the mean spacing
+_LEAST_DISTANCE = 0.7  # least distance over the mean spacing
 _ABOVE, _BEYOND, _BELOW = 0.55, 0.85, 0.15  # path: start and end above the top, and below the last jump-on
 _SCANNED = 400  # separations in which the last jump-on is found
 

@@ -47,7 +47,7 @@ _LABELS = dict(zip(MODELS, ("independent", "mean field", "order 1", "order 2"), 
 GROUPS = ("few contacts", "random", "separated", "square", "nayak", "map", "crowd")
 FEW_CONTACTS = 4.0
 """Up to so many, contacts of the patch and of its periodic images are a lattice, wherever they are placed."""
-_MIN_POINTS = 2.5  # of the grid a contact radius; below, boundary elements are off by a per cent and more
+_MIN_POINTS = 2.5  # least points of the grid a contact radius: with fewer, elements are off by a per cent and more
 _NEGLIGIBLE = 1e-4  # least error that is told apart from none
 _FINE_SEED = 11  # and above, of the cases on the finest grids
 _BINS = ((0.0, 0.004), (0.004, 0.03), (0.03, 0.15), (0.15, 1.0))

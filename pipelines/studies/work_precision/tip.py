@@ -18,10 +18,10 @@ from roughmdr.shapes import Shape
 from roughmdr.springs import Springs
 from studies.work_precision.points import Curve, Method, Reference, each_setting
 
-MODULUS, WORK = 4e6, 0.05  # of a soft rubber against a rigid body [Pa], [J/m^2]
+MODULUS, WORK = 4e6, 0.05  # a soft rubber against a rigid body [Pa], [J/m^2]
 DEPTHS = np.append(np.geomspace(1e-3, 1.0, 20), np.geomspace(1.0, 11.0, 181)[1:])  # above the fold, over its depth
 DIGITS = 70
-_DEEPEST = 50.0  # times the contact radius at the fold: beyond the deepest contact
+_DEEPEST = 50.0  # radius beyond the deepest contact, over that at the fold
 _MIN_RTOL = 1e-15  # about the least relative tolerance that brentq takes
 
 Formula = Callable[[Floats], Floats]
