@@ -44,14 +44,14 @@ class Placed:
         """The numbers of the asperities that are not buried."""
         ensemble = ensemble.taken(self.kept)
         self._columns = ensemble.columns
-        self.law = choose(ensemble.shape, Adhesion(), self._columns.params)
+        self.kernels_alone = choose(ensemble.shape, Adhesion(), self._columns.params)
         """Their kernels without adhesion."""
-        self._material = self.law.material(effective_modulus, Adhesion())
+        self._material = self.kernels_alone.material(effective_modulus, Adhesion())
         self.at = at[self.kept] / self.length
         self.height = ensemble.height / self.length
         self.emerging = below.emerging[self.kept] / self.length
         """Radii from which on the flanks of summits that are buried are in their contacts; inf for none."""
-        depth, size = _natural_scales(self.law, self._columns, self._material, self.height.size)
+        depth, size = _natural_scales(self.kernels_alone, self._columns, self._material, self.height.size)
         self.depth, self.size = depth / self.length, size / self.length
         """Natural depths and radii."""
 
@@ -62,7 +62,7 @@ class Placed:
 
     def asperities(self, count: int) -> Asperities:
         """Return the ``count`` highest."""
-        params = self.law.prepare(self._material, self._columns, 0, max(count, 1), 0.0, math.inf)
+        params = self.kernels_alone.prepare(self._material, self._columns, 0, max(count, 1), 0.0, math.inf)
         return Asperities(self.height[:count], self.depth[:count], self.size[:count], params)
 
 

@@ -51,7 +51,7 @@ class Candidates(Placed):
 
     def __init__(self, ensemble: Ensemble, effective_modulus: float, interaction: Interaction) -> None:
         super().__init__(ensemble, effective_modulus, interaction)
-        self.kernels = coupled_kernels(self.law)
+        self.kernels = coupled_kernels(self.kernels_alone)
         self.system = self._system(0)
 
     @property

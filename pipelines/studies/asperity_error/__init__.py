@@ -76,20 +76,20 @@ class _Subject:
         width, rise, params = shape.nondimensional()
         self.shape, self.effective_modulus, self.adhesion = shape, effective_modulus, Adhesion(work)
         self.columns = Columns(np.array([width]), np.array([rise]), np.asarray(params, dtype=np.float64)[None])
-        self.law = choose(shape.name, self.adhesion, self.columns.params)
-        material = self.law.material(effective_modulus, self.adhesion)
-        prepared = self.law.prepare(material, self.columns, 0, 1, 0.0, math.inf)
-        self.params = self.law.params_of(prepared, 0)
-        self.solvable = not (self.law.iterative and self.params[COUNT] == 0.0)
+        self.kernels = choose(shape.name, self.adhesion, self.columns.params)
+        material = self.kernels.material(effective_modulus, self.adhesion)
+        prepared = self.kernels.prepare(material, self.columns, 0, 1, 0.0, math.inf)
+        self.params = self.kernels.params_of(prepared, 0)
+        self.solvable = not (self.kernels.iterative and self.params[COUNT] == 0.0)
         if self.solvable:
-            (self.depth, _), self.radius, *_ = self.law.scales(effective_modulus, work, width, rise, self.params)
+            (self.depth, _), self.radius, *_ = self.kernels.scales(effective_modulus, work, width, rise, self.params)
             kind = ExactPunch if isinstance(shape, rm.FlatPunch) else ExactContact
             self.exact = kind(shape, effective_modulus, work)  # type: ignore[arg-type]
             self.branches = self._branches() if work else []
 
     def _branches(self) -> list[Branch]:
         indentation = self.exact.indentation
-        if not self.law.iterative:
+        if not self.kernels.iterative:
             return [Branch(self.exact.fold(), mp.inf, indentation(self.exact.fold()), mp.inf)]
         count = int(self.params[COUNT])
         feet, tops = ([mp.mpf(float(t)) for t in self.params[start : start + count]] for start in (FOOT, TOP))
@@ -104,7 +104,7 @@ class _Subject:
     def random_indentation(self, rng: Rng) -> float:
         """Return one at 1e-12 to 1e3 depths from the end of a branch; without adhesion at a t of 1e-4 to 1e2."""
         if not self.branches:
-            return float(self.depth * self.law.reduced_control(power_of_ten(rng, -4.0, 2.0), self.params))
+            return float(self.depth * self.kernels.reduced_control(power_of_ten(rng, -4.0, 2.0), self.params))
         depth, branch = self.fold_depth, self.branches[int(rng.integers(len(self.branches)))]
         distance = depth * power_of_ten(rng, math.log10(NEAREST), -3.0 if rng.random() < 0.5 else 3.0)
         if branch.highest < mp.inf and rng.random() < 0.5:
@@ -115,7 +115,7 @@ class _Subject:
         """Compare the sum over the asperity with the exact force; None where it detaches, or is too near to that."""
         h, asked = np.array(path), {totals.FORCE, totals.ERROR}
         total, _, _ = loop.sum_over_asperities(
-            self.law, np.array([height]), self.columns, self.effective_modulus, self.adhesion, h, staircase(h), asked
+            self.kernels, np.array([height]), self.columns, self.effective_modulus, self.adhesion, h, staircase(h), asked
         )
         offset = self.depth if self.branches else 0.0
         x = [((height - each) + offset) / self.depth for each in path]
@@ -145,18 +145,18 @@ class _Subject:
 
     def _branch_at_end(self, x: list[float]) -> int:
         """Return the number of the branch at the end of a path of reduced controls, from 1; 0 out of contact."""
-        if not self.law.branched:
+        if not self.kernels.branched:
             return 1
         number = 0.0
         for each in x:
-            number = self.law.branch(max(each, 0.0), number, True, self.params)
+            number = self.kernels.branch(max(each, 0.0), number, True, self.params)
         return int(number)
 
     def _state_found(self, x: float, number: float) -> float:
         """Return the state that the kernels find, where the exact search begins."""
-        law, params = self.law, self.params
-        state = law.state_on_branch(x, number, params) if law.branched else law.state(x, params)
-        return state if law.iterative else self.radius * law.radius(state, params)
+        kernels, params = self.kernels, self.params
+        state = kernels.state_on_branch(x, number, params) if kernels.branched else kernels.state(x, params)
+        return state if kernels.iterative else self.radius * kernels.radius(state, params)
 
 
 def random_error(kind: str, adhesive: bool, seed: int) -> ForceError:

@@ -55,7 +55,7 @@ class Front(Placed):
 
     def __init__(self, ensemble: Ensemble, effective_modulus: float, work: float, interaction: Interaction) -> None:
         super().__init__(ensemble, effective_modulus, interaction)
-        self._kernels = jkr_kernels(self.law)
+        self._kernels = jkr_kernels(self.kernels_alone)
         self.work = work / effective_modulus / self.length
         """Work of adhesion over E* and the side of the patch."""
         if not (self.work > 0.0 and math.isfinite(self.work)):
