@@ -114,8 +114,9 @@ class _Subject:
     def force_error(self, height: float, path: list[float]) -> ForceError | None:
         """Compare the sum over the asperity with the exact force; None where it detaches, or is too near to that."""
         h, asked = np.array(path), {totals.FORCE, totals.ERROR}
+        modulus = self.effective_modulus
         total, _, _ = loop.sum_over_asperities(
-            self.kernels, np.array([height]), self.columns, self.effective_modulus, self.adhesion, h, staircase(h), asked
+            self.kernels, np.array([height]), self.columns, modulus, self.adhesion, h, staircase(h), asked
         )
         offset = self.depth if self.branches else 0.0
         x = [((height - each) + offset) / self.depth for each in path]
