@@ -195,5 +195,5 @@ def test_a_run_says_which_grid_it_used() -> None:
 
 
 def test_a_free_patch_has_no_grid() -> None:
-    with pytest.raises(rm.SceneError, match="goes with model 'pairwise' and boundary 'periodic' only"):
+    with pytest.raises(rm.SceneError, match='does not go with boundary = "free": the grid repeats'):
         rm.load_separation(crowded(), separation=1e-6, effective_modulus=1e6, interaction={**GRID, "boundary": "free"})

@@ -9,6 +9,7 @@ import roughmdr as rm
 from roughmdr.report.result_document import result_table
 from roughmdr.result.view import ResultView
 from roughmdr.scene import Scene, read
+from roughmdr.schema.section import meanings
 from roughmdr.stages import STAGES, stages_in
 from roughmdr.stages.conduction import Conduction
 from roughmdr.stages.stage import Stage
@@ -21,7 +22,7 @@ LATERAL = {"separation": "1 sigma", "lateral": {"amplitude": "1 um", "steps": 4}
 @pytest.mark.parametrize("stage", STAGES, ids=lambda stage: stage.key)
 def test_what_a_stage_declares_is_there(stage: type[Stage]) -> None:
     assert stage.key in Scene.model_fields
-    assert {name for name in stage.words if "[]" not in name} == set(stage.model_fields)
+    assert all(field.description or meanings(stage)[name] for name, field in stage.model_fields.items())
     assert set(stage.own_variables) <= set(OUTPUT_VARIABLES)
     assert not stage.noted or stage.noted in RESULT_ATTRIBUTES
     table = {**scene(adhesion=None, batch=None), **stage.small_scene}
