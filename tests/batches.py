@@ -5,12 +5,11 @@ import math
 import os
 import re
 import shutil
-import sqlite3
 import subprocess
 import sys
 import time
 from collections.abc import Callable, Iterator
-from contextlib import closing, contextmanager, suppress
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -22,8 +21,7 @@ from scenes import ASPERITIES, scene
 
 from roughmdr.batch import tasks
 from roughmdr.batch.plan import make_plan
-from roughmdr.batch.resume.kept import rows_of
-from roughmdr.batch.resume.store import connect, store_path
+from roughmdr.batch.resume.store import store_folder
 from roughmdr.batch.task_result import TaskResult
 from roughmdr.runner import local
 from roughmdr.runner.backend import Backend
@@ -73,7 +71,7 @@ def interrupted(
         with pytest.raises(KeyboardInterrupt):
             execute(make_plan(read(table)), out, Backend(workers=1, runs_per_task=runs_per_task), resume=resume)
     assert out.exists() == there
-    assert store_path(destination(out)).is_file()
+    assert store_folder(destination(out)).is_dir()
 
 
 class Batch:
@@ -128,7 +126,7 @@ class Batch:
 
     def wait_for_lines(self, count: int) -> None:
         """Until so many task results are kept, or it is over."""
-        until(lambda: stored(self.folder) >= count or self.process.poll() is not None)
+        until(lambda: len(lines(self.folder)) >= count or self.process.poll() is not None)
 
 
 def computed(said: str) -> int:
@@ -144,25 +142,20 @@ def until(condition: Callable[[], bool], patience: float = PATIENCE, pause: floa
         time.sleep(pause)
 
 
-def stored(folder: Path) -> int:
-    """The number of task results that are kept, at once: 0 while it cannot be told."""
-    with suppress(sqlite3.Error), closing(connect(folder / "out.nc.parts", "ro", patience=0.0)) as database:
-        return int(database.execute("SELECT count(*) FROM results").fetchone()[0])
-    return 0
-
-
-def lines(folder: Path) -> list[int]:
-    """The numbers of runs of the task results that are kept."""
+def lines(folder: Path) -> list[dict[str, Any]]:
+    """The whole lines of the manifest that speak of task results."""
+    manifest = folder / "out.nc.parts" / "manifest.jsonl"
     try:
-        (found,) = rows_of(folder / "out.nc.parts", "SELECT cells FROM results ORDER BY number")
-    except (OSError, sqlite3.Error):
+        content = manifest.read_bytes()
+    except OSError:
         return []
-    return [sum(json.loads(cells).values()) for (cells,) in found]
+    found = [json.loads(line) for line in content[: content.rfind(b"\n") + 1].splitlines()]
+    return [line for line in found if "file" in line]
 
 
 def kept(folder: Path) -> int:
     """How many runs are kept."""
-    return sum(lines(folder))
+    return sum(line["realizations"] for line in lines(folder))
 
 
 def write_scene(folder: Path, table: dict[str, Any]) -> None:

@@ -1,5 +1,6 @@
 """Files of each kind to be changed, the commands that read them, and how these must end."""
 
+import shutil
 from collections.abc import Iterator
 from contextlib import chdir, contextmanager, nullcontext
 from pathlib import Path
@@ -92,7 +93,7 @@ def put(content: Content, *, believed: bool) -> bool:
     """Put it at ``changed.nc``, with a checksum of its own where it is to be ``believed``; whether that can be."""
     for left in ("again.nc", "changed.nc"):  # the library may still hold open what it could not write
         Path(left).unlink(missing_ok=True)
-    Path("changed.nc.parts").unlink(missing_ok=True)
+    shutil.rmtree("changed.nc.parts", ignore_errors=True)
     try:
         write(content, Path("changed.nc"))
     except Exception:  # netCDF itself refuses what was made up

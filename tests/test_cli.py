@@ -162,9 +162,9 @@ def test_a_synthetic_surface_end_to_end(tmp_path: Path) -> None:
 
 @pytest.mark.large
 def test_the_scaling_study_in_its_quick_form(tmp_path: Path) -> None:
-    script = SCENES.parent / "scaling.py"
+    script = SCENES.parent / "study.py"
     done = subprocess.run(
-        [sys.executable, script, "-o", tmp_path, "--quick"], capture_output=True, text=True, check=False
+        [sys.executable, script, "scaling", "-o", tmp_path, "--quick"], capture_output=True, text=True, check=False
     )
     assert done.returncode == 0, done.stderr
     with xr.open_dataset(tmp_path / "scaling.nc") as result:
@@ -179,9 +179,9 @@ def test_the_scaling_study_in_its_quick_form(tmp_path: Path) -> None:
 
 @pytest.mark.large
 def test_the_study_of_plans_in_its_quick_form(tmp_path: Path) -> None:
-    script = SCENES.parent / "foreseen.py"
+    script = SCENES.parent / "study.py"
     done = subprocess.run(
-        [sys.executable, script, "-o", tmp_path, "--quick"], capture_output=True, text=True, check=False
+        [sys.executable, script, "foreseen", "-o", tmp_path, "--quick"], capture_output=True, text=True, check=False
     )
     assert done.returncode == 0, done.stderr
     with xr.open_dataset(tmp_path / "foreseen.nc") as result:

@@ -5,7 +5,6 @@ What each part costs alone is measured; that parts and workers do not hinder eac
 
 import tempfile
 import time
-from contextlib import ExitStack
 from pathlib import Path
 from statistics import median
 
@@ -17,7 +16,7 @@ from benchmarks.child import small_scene
 from roughmdr.batch.known_moments import KnownMoments
 from roughmdr.batch.moments import Moments
 from roughmdr.batch.plan import make_plan
-from roughmdr.batch.resume.store import CheckpointStore
+from roughmdr.batch.resume.store import locked_store
 from roughmdr.batch.rounds import Rounds
 from roughmdr.batch.task_result import ResultRow, TaskResult, row_of
 from roughmdr.batch.tasks import split_into_tasks
@@ -41,13 +40,11 @@ def writing() -> tuple[float, float]:
     pull_off = pull_off.merged(pull_off)
     result = TaskResult.of(["0" * 32], variables, [ResultRow(0, 0, moments, pull_off, row_of(run_time=1.0))], steps)
     times = []
-    with tempfile.TemporaryDirectory() as folder, ExitStack() as stack:
-        store = CheckpointStore(Path(folder) / "result.nc", stack)
-        store.begin("", "")
+    with tempfile.TemporaryDirectory() as folder, locked_store(Path(folder) / "result.nc") as store:
+        store.begin("", "", "", "")
         for _ in range(_REPEATS):
             started = time.perf_counter()
-            store.put(result)
-            store.flush()
+            store.write(result)
             times.append(time.perf_counter() - started)
         store.clear()
     return median(times), float(len(result.to_bytes()))
@@ -93,7 +90,7 @@ def report(result: xr.Dataset) -> str:
         ["most workers of use", f"{computing / max(hours.values()):.0f}"],
         ["result, statistics", f"{large['statistics'] / 1e6:.0f} MB"],
         ["result, curves", f"{large['curves'] / 1e9:.1f} GB, held about twice: not to be done"],
-        ["task results until the end", f"{large['task_results'] / 1e9:.0f} GB"],
+        ["task results until the end", f"{large['task_results'] / 1e9:.0f} GB, one file a task"],
         [f"memory, {ENSEMBLE:.0e} a run", f"{large['ensemble'] / 1e6:.0f} MB a worker"],
         [f"memory, {ASPERITIES:.0e} a run", f"{large['whole'] / 1e9:.0f} GB a worker"],
     ]

@@ -22,13 +22,13 @@ def info(ctx: click.Context, result: Path, cells: bool, as_json: bool) -> None:
     Prints sizes, the pull-off force with its error, run time, seed, versions and the scene. RESULT may also be
     OUT.nc.parts, while a run is at work or after it was interrupted: prints how far it is.
     """
-    if result.name.endswith(".parts") and result.exists():
+    if result.name.endswith(".parts") and result.is_dir():
         _info_parts(ctx, result, cells=cells, as_json=as_json)
         return
     parts = result.with_name(f"{result.name}.parts")
     awaited = False
     with suppress(OSError):  # a name that is too long for its parts has none
-        awaited = parts.exists() and not result.exists()
+        awaited = parts.is_dir() and not result.exists()
     if awaited:
         raise StoreError(f"{result}: is not written yet; what is finished is told by: roughmdr info {parts}")
     from roughmdr.report.summary import describe
@@ -52,11 +52,11 @@ def info(ctx: click.Context, result: Path, cells: bool, as_json: bool) -> None:
         print_text(describe(data, result, cells=cells))
 
 
-def _info_parts(ctx: click.Context, path: Path, *, cells: bool, as_json: bool) -> None:
+def _info_parts(ctx: click.Context, folder: Path, *, cells: bool, as_json: bool) -> None:
     from roughmdr.batch.resume.kept import read_kept
     from roughmdr.report.parts import describe_parts, parts_table
 
-    kept = read_kept(path)
+    kept = read_kept(folder)
     if as_json:
         print_document(ctx, parts=parts_table(kept))
     else:

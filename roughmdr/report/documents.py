@@ -164,10 +164,10 @@ class PartCellTable(TypedDict):
 
 
 class PartsTable(TypedDict):
-    """A file OUT.nc.parts: what a batch has done that is at work, or was interrupted."""
+    """A folder OUT.nc.parts: what a batch has done that is at work, or was interrupted."""
 
     title: str | None
-    folder: str  # path of OUT.nc.parts, which was a folder once
+    folder: str
     output: str
     done: int  # runs that are kept
     total: int | None  # null where it is not known, as with [accuracy]

@@ -30,7 +30,7 @@ def parts_table(kept: Kept) -> PartsTable:
     scene = progress.scene
     return {
         "title": None if scene is None else scene.title,
-        "folder": str(kept.path),
+        "folder": str(kept.folder),
         "output": str(kept.output),
         "done": kept.runs,
         "total": progress.total,

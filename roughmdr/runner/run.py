@@ -13,8 +13,9 @@ from roughmdr.batch.collect import Collector
 from roughmdr.batch.costs import ensemble_bytes, result_bytes
 from roughmdr.batch.foresee import check_foreseen
 from roughmdr.batch.plan import Plan, make_plan
-from roughmdr.batch.resume.find import ReusableRows, check_no_less, find_previous, is_finished, reuse
-from roughmdr.batch.resume.store import CheckpointStore
+from roughmdr.batch.resume.find import check_no_less, find_previous, is_finished, reuse
+from roughmdr.batch.resume.reusable import ReusableRows
+from roughmdr.batch.resume.writer import CheckpointWriter
 from roughmdr.batch.rounds import Rounds
 from roughmdr.batch.task_result import TaskResult
 from roughmdr.batch.tasks import RunRange, first_error, prepare_all, split_into_tasks
@@ -136,16 +137,16 @@ def execute(
         target = destination(target)
     rounds = Rounds(plan)
     with ExitStack() as stack:
-        store = CheckpointStore(target, stack)
+        writer = CheckpointWriter(target, stack)
         reusable = ReusableRows(rounds.keys, _computed_variables(plan), keep_moments=plan.keeps_statistics)
         old: Labelled | None = None
         if target is not None and resume:
-            old = None if store.may_replace(plan.scene.toml) else find_previous(target)
+            old = None if writer.may_replace(plan.scene.toml) else find_previous(target)
             if old is not None and is_finished(old, plan, rounds.keys):
-                if store.scene in ("", old.attrs["scene"]):
-                    store.clear()  # the run that wrote the result was killed before it could
+                if writer.store is not None and writer.store.scene in ("", old.attrs["scene"]):
+                    writer.store.clear()  # the run that wrote the result was killed before it could
                 return old
-            reuse(target, old, store, plan, reusable)
+            reuse(target, old, writer.store, plan, reusable)
         stack.enter_context(compiling(lambda: tell_compiling(plan.scene.title, quiet=quiet)))
         check_foreseen(plan)
         runs = sum(method.realizations for method in rounds.methods)  # of the first round
@@ -157,13 +158,13 @@ def execute(
         try:
             with backend.pool() as pool:
                 if not resume:
-                    store.clear(fresh=True)
-                batch = _Batch(plan, rounds, store, reusable, pool, backend.runs_per_task, command)
+                    writer.clear()
+                batch = _Batch(plan, rounds, writer, reusable, pool, backend.runs_per_task, command)
                 return batch.run(old, quiet=quiet)
         except (StoreError, MemoryError) as error:
             message = str(error) or f"out of memory, with {describe_available_memory()}"
-            if store.saved_message:
-                raise Unfinished(f"{message}; {store.saved_message}") from None
+            if writer.saved_message:
+                raise Unfinished(f"{message}; {writer.saved_message}") from None
             if isinstance(error, MemoryError):
                 raise Unfinished(message) from None
             raise
@@ -182,7 +183,7 @@ class _Batch:
 
     _plan: Plan
     _rounds: Rounds
-    _store: CheckpointStore
+    _writer: CheckpointWriter
     _reusable: ReusableRows
     _pool: Pool
     _runs_per_task: int | None
@@ -196,7 +197,7 @@ class _Batch:
 
     def run(self, old: Labelled | None, *, quiet: bool) -> Labelled:
         """Run all rounds; return the result, whose history continues that of the ``old`` one that it may replace."""
-        with interruptible(lambda: self._store.begun, self._saved_message) as stop:
+        with interruptible(lambda: self._writer.begun, self._saved_message) as stop:
             with progress(self._plan.scene.title, quiet=quiet) as display:
                 ranges = self._rounds.begin()
                 while ranges:
@@ -217,12 +218,12 @@ class _Batch:
         result = assemble(self._plan, methods, collected, self._variables, self._command)
         if old is not None:
             result.attrs["history"] += f"\n{old.attrs['history']}"
-            check_no_less(self._store.target, old, result, self._rounds.keys)
-        self._store.finish(result, complete=not (failed.any() or self._reusable.has_unused(cells)))
+            check_no_less(self._writer.target, old, result, self._rounds.keys)
+        self._writer.finish(result, complete=not (failed.any() or self._reusable.has_unused(cells)))
         return result
 
     def _saved_message(self) -> str:
-        return self._store.saved_message or "nothing was written"
+        return self._writer.saved_message or "nothing was written"
 
     def _round(self, ranges: list[RunRange], display: Progress, stop: threading.Event) -> None:
         """Reuse what there is, compute what is missing."""
@@ -242,15 +243,15 @@ class _Batch:
         if not isinstance(self._pool, Cluster):
             prepare_all(self._plan, missing)
         if len(tasks) > 1:
-            self._store.begin(self._plan.scene.toml, self._command)
+            self._writer.begin(self._plan.scene.toml, self._command)
         pool = Serial() if len(tasks) == 1 and isinstance(self._pool, Threads) else self._pool
 
         def sink(result: TaskResult) -> None:
-            self._store.put(result)
+            self._writer.put(result)
             self._collector.add(result)
             display.add(done=result.realizations)
 
         pool.compute(tasks, stop, sink)
         if stop.is_set():
-            self._store.flush()
+            self._writer.flush()
             raise Interrupted(f"interrupted; {self._saved_message()}")

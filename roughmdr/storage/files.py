@@ -104,20 +104,19 @@ def convert_os_errors(path: Path) -> Iterator[None]:
 
 
 @contextmanager
-def replace_atomically(path: Path, temporary: Path | None = None) -> Iterator[Path]:
+def replace_atomically(path: Path, folder: Path | None = None) -> Iterator[Path]:
     """Yield a temporary file to write to; it replaces ``path`` once everything is written and on disk.
 
-    ``temporary`` names it, a file beside ``path`` that is not there yet. If ``path`` is a link, its target is replaced.
+    The temporary file is in ``folder``, which must be on the same disk; by default beside ``path``. If ``path`` is a
+    link, its target is replaced.
     """
     check_writable(path)
     path = destination(path)
     with convert_os_errors(path):
-        if temporary is None:
-            descriptor, name = tempfile.mkstemp(prefix=_TEMPORARY_PREFIX, suffix=".tmp", dir=path.parent)
-            os.close(descriptor)
-            temporary = Path(name)
-        else:
-            temporary.touch(exist_ok=False)
+        with tempfile.NamedTemporaryFile(
+            prefix=_TEMPORARY_PREFIX, suffix=".tmp", dir=folder or path.parent, delete=False
+        ) as created:
+            temporary = Path(created.name)
         try:
             yield temporary
             with temporary.open("rb") as written:

@@ -27,11 +27,11 @@ _NOT_SUPPORTED = (errno.EOPNOTSUPP, errno.EINVAL, errno.ENOSYS, errno.ENODEV)  #
 _FILE_OVERHEAD, _ARRAY_OVERHEAD, _ATTRIBUTE_OVERHEAD, _TEXT_OVERHEAD = 2**15, 2**11, 2**8, 56
 
 
-def write_netcdf(data: Labelled, path: Path, temporary: Path | None = None) -> None:
-    """Write ``data`` to ``path`` atomically, through a file named ``temporary``; StoreError if that fails."""
-    with replace_atomically(path, temporary) as unfinished:
+def write_netcdf(data: Labelled, path: Path, folder: Path | None = None) -> None:
+    """Write ``data`` to ``path`` atomically, through a temporary file in ``folder``; StoreError if that fails."""
+    with replace_atomically(path, folder) as temporary:
         try:
-            write_arrays(data, unfinished)
+            write_arrays(data, temporary)
         except RuntimeError as error:  # raised by the library
             raise StoreError(f"{path}: cannot be written: {error}") from None
 

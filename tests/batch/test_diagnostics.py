@@ -12,7 +12,7 @@ from scenes import ASPERITIES, scene
 
 import roughmdr as rm
 from roughmdr.batch import tasks
-from roughmdr.batch.resume.store import store_path
+from roughmdr.batch.resume.store import store_folder
 from roughmdr.batch.task_result import merge_rows, row_of
 from roughmdr.storage.result_file import read_result
 from roughmdr.variables import DONE, FAILED, NOT_RUN, RUN_DIAGNOSTICS, Diagnostic
@@ -61,7 +61,7 @@ def test_the_diagnostic_of_the_guide_is_in_every_result(
         np.testing.assert_array_equal(fresh.visit_count, single.sum("realization"))
     interrupted(table, out, 4, monkeypatch)
     resumed = rm.run(table, out)
-    assert not store_path(out).exists()
+    assert not store_folder(out).exists()
     for found in (
         resumed,
         read_result(out).to_xarray(),

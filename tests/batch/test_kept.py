@@ -2,9 +2,9 @@
 
 import json
 import os
+import shutil
 import signal
-import sqlite3
-from contextlib import ExitStack, closing
+from contextlib import chdir
 from pathlib import Path
 from typing import Any, get_type_hints
 
@@ -16,7 +16,7 @@ from click.testing import CliRunner
 from scenes import ASPERITIES, scene
 
 import roughmdr as rm
-from roughmdr.batch.resume.store import CheckpointStore
+from roughmdr.batch.resume import kept as module
 from roughmdr.cli import main
 from roughmdr.report.documents import PartCellTable, PartsTable
 
@@ -44,8 +44,8 @@ def stopped(process: int) -> set[int]:
     return {thread for thread, text in states.items() if text.rpartition(")")[2].split()[0] == "T"}
 
 
-def state(path: Path) -> dict[str, tuple[int, bytes]]:
-    return {each.name: (each.stat().st_mtime_ns, each.read_bytes()) for each in path.parent.glob("out.nc.parts*")}
+def state(folder: Path) -> dict[str, tuple[int, bytes]]:
+    return {path.name: (path.stat().st_mtime_ns, path.read_bytes()) for path in folder.iterdir()}
 
 
 @pytest.mark.large
@@ -151,83 +151,48 @@ def test_parts_of_other_versions_and_of_scenes_that_cannot_be_read(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     interrupted(scene(asperities={**ASPERITIES, "count": 20}), tmp_path / "out.nc", 2, monkeypatch)
+    manifest = tmp_path / "out.nc.parts" / "manifest.jsonl"
+    head, *rest = map(json.loads, manifest.read_text().splitlines())
+
+    def found(header: dict[str, Any], others: list[Any]) -> str:
+        manifest.write_text("".join(f"{json.dumps(line)}\n" for line in (header, *others)) + '{"file": "0000')
+        table(manifest.parent)
+        return told(manifest.parent)
+
+    assert "4 of 16 runs" in found(head, rest)
+    assert "cells        not told: other versions began" in found({**head, "versions": "roughmdr 0"}, rest)
+    old = [{name: line[name] for name in ("file", "sha256", "realizations")} for line in rest]
+    text = found({name: head[name] for name in ("scene", "versions", "replaces")}, old)
+    assert "4 of 16 runs" in text
+    assert f"goes on by   roughmdr run SCENE -o {tmp_path / 'out.nc'}" in text
+    assert "cells        not told: its scene cannot be read here" in found({**head, "scene": "a = "}, rest)
+    strange = [3, {"file": 3}, {"failed": [3, ["a"], ["b", "c"]], "remark": ""}, {"failed": [["a", 1]], "remark": ""}]
+    assert "failed       1 runs ()" in found({**head, "command": "a 'b"}, [*rest, *strange])
+
+
+@pytest.mark.parametrize("listed", [True, False])
+def test_who_is_at_work(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, listed: bool) -> None:
+    """Also on systems that do not list their locks, where a process of the same number is taken for it."""
+    interrupted(scene(asperities={**ASPERITIES, "count": 20}), tmp_path / "out.nc", 2, monkeypatch)
     parts = tmp_path / "out.nc.parts"
-
-    def found(**changes: str) -> str:
-        with closing(sqlite3.connect(parts)) as database, database:
-            for name, value in changes.items():
-                database.execute(f"UPDATE batch SET {name} = ?", (value,))
-        table(parts)
-        return told(parts)
-
-    assert "4 of 16 runs" in found()
-    assert "goes on by   a 'b" in found(command="a 'b")
-    assert f"goes on by   roughmdr run SCENE -o {tmp_path / 'out.nc'}" in found(command="")
-    assert "cells        not told: other versions began" in found(versions="roughmdr 0")
-    assert "cells        not told: its scene cannot be read here" in found(scene="a = ")
-
-
-def begun(out: Path, stack: ExitStack) -> CheckpointStore:
-    """A store in which nothing is kept, and which stays all the same."""
-    store = CheckpointStore(out, stack)
-    store.begin("title = 'a'", "roughmdr run")
-    store.empty = False
-    return store
-
-
-def test_who_is_at_work(tmp_path: Path) -> None:
-    out, parts, lock = (tmp_path / f"out.nc{ending}" for ending in ("", ".parts", ".parts-lock"))
-
-    def holder() -> tuple[int | None, bool]:
-        found = table(parts)
-        return found["holder"] and found["holder"]["process"], found["holder_known"]
-
-    with ExitStack() as stack:
-        begun(out, stack)
-        assert holder() == (os.getpid(), True)
-        with pytest.raises(rm.StoreError, match=rf"another run is writing it \(process {os.getpid()} on "):
-            rm.run(scene(batch=None), out)
-        saved = lock.read_text()
-    assert holder() == (None, True)
-    for left, known in ((saved, (None, True)), ("process 3 on elsewhere\n", (3, False)), ("odd", (None, True))):
-        lock.write_text(left)  # of a run that was killed
-        assert holder() == known
-    lock.write_text("process 3 on elsewhere\n")
-    assert "perhaps process 3 on elsewhere" in told(parts)
-    rm.run(scene(batch=None), out)
-    assert [path.name for path in tmp_path.iterdir()] == ["out.nc"]
-
-
-def test_where_nothing_is_kept(tmp_path: Path) -> None:
-    parts = tmp_path / "out.nc.parts"
-    parts.touch()
-    done = CliRunner().invoke(main, ["info", str(parts), "--json"])
-    assert done.exit_code == 2
-    assert "holds no runs" in json.loads(done.stdout)["faults"][0]["message"]
-    (tmp_path / "out.nc.parts-lock").touch()
-    assert "kept         nothing: a run has just begun here, or has just ended" in told(parts)
-
-
-def test_a_run_that_was_killed_while_it_wrote_is_read_and_left_alone(tmp_path: Path) -> None:
-    """Its journal stays for the run that goes on."""
-    (tmp_path / "before").mkdir()
-    parts, journal = (tmp_path / "before" / f"out.nc.parts{ending}" for ending in ("", "-journal"))
-    with ExitStack() as stack:
-        begun(tmp_path / "before" / "out.nc", stack)
-    with closing(sqlite3.connect(parts)) as database:
-        database.execute("PRAGMA cache_size = 1")
-        for number in range(50):  # more than is held in memory: it is in the file before the transaction ends
-            database.execute("INSERT INTO failed (cell, realization) VALUES (?, ?)", ("a" * 1000, number))
-        for path in (parts, journal):
-            (tmp_path / path.name).write_bytes(path.read_bytes())
-    parts = tmp_path / "out.nc.parts"
-    before = state(parts)
-    assert len(before) == 2
-    with pytest.raises(sqlite3.OperationalError, match="readonly"):
-        sqlite3.connect(f"file:{parts}?mode=ro", uri=True).execute("SELECT * FROM failed")
-    found = table(parts)
-    assert (found["failed"], found["scene"]) == (0, "title = 'a'")
-    assert state(parts) == before
+    if not listed:
+        monkeypatch.setattr(module, "_LOCKS", tmp_path / "none")
+    with chdir(tmp_path):
+        for process, works in ((os.getpid(), not listed), (2**22 + 1, False)):
+            (parts / "lock").write_text(f"process {process} on {os.uname().nodename}\n")
+            assert (table(parts)["holder"] is not None) == works
+        (parts / "lock").write_text("process 3 on elsewhere\n")
+        assert table(parts)["holder_known"] is False
+        assert "perhaps process 3 on elsewhere" in told(parts)
+        (parts / "lock").unlink()
+        assert table(parts)["holder"] is None
+        shutil.rmtree(parts)
+        parts.mkdir()
+        done = CliRunner().invoke(main, ["info", str(parts), "--json"])
+        assert done.exit_code == 2
+        assert "holds no runs" in json.loads(done.stdout)["faults"][0]["message"]
+        (parts / "lock").touch()
+        assert "kept         nothing: a run has just begun here, or has just ended" in told(parts)
 
 
 def test_a_result_says_nothing_of_it(tmp_path: Path) -> None:

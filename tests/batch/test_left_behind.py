@@ -1,9 +1,5 @@
-"""Runs find at their output what is not their own: another result, files at the place of its parts, odd results."""
+"""Runs find at their output what is not their own: another result, files in the folder of its parts, odd results."""
 
-import os
-import sqlite3
-from collections.abc import Callable
-from contextlib import closing
 from pathlib import Path
 from typing import Any
 
@@ -97,59 +93,19 @@ def test_kept_runs_of_other_cells_excuse_no_loss(tmp_path: Path) -> None:
         assert destination(out).with_name("out.nc.parts").exists()
 
 
-def earlier(path: Path) -> None:
-    path.mkdir()
-    (path / "manifest.jsonl").write_text("{}")
-
-
-def foreign(path: Path) -> None:
-    with closing(sqlite3.connect(path)) as database:
-        database.execute("CREATE TABLE mine (thesis TEXT)")
-
-
-@pytest.mark.parametrize("resume", [True, False])
-@pytest.mark.parametrize(
-    ("put", "says"),
-    [
-        (
-            earlier,
-            r"out\.nc\.parts: is a folder, in which earlier versions kept runs: finish it with them, or remove it",
-        ),
-        (foreign, r"out\.nc\.parts: holds no runs that can be read; remove it, or move it away"),
-        (lambda path: path.write_text("mine"), r"out\.nc\.parts: holds no runs that can be read; remove it"),
-        (lambda path: path.symlink_to("precious"), r"out\.nc\.parts: is no ordinary file; remove it"),
-        (os.mkfifo, r"out\.nc\.parts: is no ordinary file; remove it"),
-    ],
-)
-def test_what_others_have_at_the_place_of_parts_stays(
-    put: Callable[[Path], None], says: str, resume: bool, tmp_path: Path
-) -> None:
-    (tmp_path / "precious").touch()
-    put(tmp_path / "out.nc.parts")
-
-    def state() -> dict[Path, tuple[int, ...]]:
-        status = {path: path.lstat() for path in tmp_path.rglob("*")}
-        return {path: (each.st_mode, each.st_ino, each.st_size, each.st_mtime_ns) for path, each in status.items()}
-
-    before = state()
-    with pytest.raises(rm.StoreError, match=says):
-        rm.run(few(), tmp_path / "out.nc", resume=resume)
-    assert state() == before
-    done = CliRunner().invoke(main, ["info", str(tmp_path / "out.nc.parts")])
-    assert done.exit_code == 2
-    assert "out.nc.parts: " in done.stderr
-
-
-def test_links_beside_the_parts_are_not_followed(tmp_path: Path) -> None:
-    (tmp_path / "precious").write_text("precious")
-    (tmp_path / "out.nc.parts-lock").symlink_to(tmp_path / "precious")
-    with pytest.raises(rm.StoreError, match=r"out\.nc\.parts"):
-        rm.run(few(), tmp_path / "out.nc")
-    (tmp_path / "out.nc.parts-lock").unlink()
-    (tmp_path / "out.nc.parts-result").symlink_to(tmp_path / "precious")
-    rm.run(few(), tmp_path / "out.nc")
-    assert (tmp_path / "precious").read_text() == "precious"
-    assert sorted(path.name for path in tmp_path.iterdir()) == ["out.nc", "precious"]
+@pytest.mark.parametrize("linked", [False, True])
+def test_what_others_have_in_the_folder_of_parts_stays(linked: bool, tmp_path: Path) -> None:
+    out, parts = tmp_path / "out.nc", tmp_path / "out.nc.parts"
+    folder = tmp_path / "elsewhere" if linked else parts
+    (folder / "mine").mkdir(parents=True)
+    files = [folder / "mine" / "thesis.txt", folder / "notes.tmp", folder / "a.txt", folder / "result.nc"]
+    for file in files:
+        file.write_text("mine")
+    if linked:
+        parts.symlink_to(folder)
+    rm.run(few(), out)
+    assert out.exists()
+    assert all(file.read_text() == "mine" for file in files)
 
 
 @pytest.mark.parametrize("lacking", ["remark", "adhesion_law"])

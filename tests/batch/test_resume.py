@@ -17,8 +17,8 @@ from scenes import ASPERITIES, scene
 import roughmdr as rm
 from roughmdr.batch import tasks
 from roughmdr.batch.plan import make_plan
-from roughmdr.batch.resume import find, keys, store
-from roughmdr.batch.resume.store import store_path
+from roughmdr.batch.resume import find, keys, writer
+from roughmdr.batch.resume.store import store_folder
 from roughmdr.result import assemble as result
 from roughmdr.runner.backend import Backend
 from roughmdr.runner.run import execute
@@ -121,7 +121,7 @@ def test_the_same_again_computes_nothing(name: str, calls: Calls, out: Path) -> 
     again = go(SCENES[name], out)
     assert not calls.taken()
     assert out.read_bytes() == content
-    assert not store_path(out).exists()
+    assert not store_folder(out).exists()
     assert_same(again, first)
     np.testing.assert_array_equal(again.run_time, first.run_time)
 
@@ -193,7 +193,7 @@ def refused(table: dict[str, Any], out: Path, message: str) -> None:
     with pytest.raises(rm.StoreError, match=f"{message}.*--fresh"):
         go(table, out)
     assert out.read_bytes() == content
-    assert not store_path(out).exists()
+    assert not store_folder(out).exists()
 
 
 VARIABLES = ["force", "contact_area", "energy"]
@@ -316,7 +316,7 @@ def test_another_scene_is_refused(name: str, keep: str, calls: Calls, out: Path)
     assert "resume=False" in str(refused.value)
     assert not calls.taken()
     assert out.read_bytes() == content
-    assert not store_path(out).exists()
+    assert not store_folder(out).exists()
     assert_same(go(other, out, resume=False), go(other, None))
 
 
@@ -418,7 +418,7 @@ def test_cells_that_are_the_same_are_computed_once(keep: str, calls: Calls, out:
 @pytest.fixture
 def other_versions(monkeypatch: pytest.MonkeyPatch) -> Callable[[], None]:
     def change() -> None:
-        for module in (keys, find, store, tasks, result):
+        for module in (keys, find, writer, tasks, result):
             monkeypatch.setattr(module, "versions", lambda: "roughmdr 99")
 
     return change
@@ -439,7 +439,7 @@ def test_other_versions_are_not_used(
     assert not calls.taken()
     go(small(), out, resume=False)
     assert calls.taken() == every([0.05], 0, 6)
-    assert not store_path(out).exists()
+    assert not store_folder(out).exists()
 
 
 @pytest.mark.parametrize("keep", ["curves", "statistics"])
@@ -453,7 +453,7 @@ def test_what_an_interrupted_run_finished_is_used(
     assert len(done) == 2 * after
     found = go(table, out, runs_per_task=4)
     assert sorted(done + calls.taken()) == every([0.01, 0.03, 0.05], 0, 6)
-    assert not store_path(out).exists()
+    assert not store_folder(out).exists()
     assert_same(found, go(table, None))
 
 
@@ -496,7 +496,7 @@ def test_variables_of_an_interrupted_run_that_are_not_asked_for_stay(
     calls.taken()
     assert_same(go(more, out), go(more, None))
     assert calls.taken() == sorted([*every([0.05], 4, 6), *every([0.05], 0, 6)])
-    assert not store_path(out).exists()
+    assert not store_folder(out).exists()
 
 
 def test_interrupted_twice_and_shorter_at_last(calls: Calls, out: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -514,9 +514,9 @@ def test_an_interrupted_run_of_another_scene_is_refused(out: Path, monkeypatch: 
     interrupted(small(), out, 2, monkeypatch)
     with pytest.raises(rm.StoreError, match=r"seed was 7, is 8"):
         go(small(seed=8), out)
-    assert store_path(out).is_file()
+    assert store_folder(out).is_dir()
     go(small(seed=8), out, resume=False)
-    assert not store_path(out).exists()
+    assert not store_folder(out).exists()
 
 
 @pytest.mark.parametrize("keep", ["curves", "statistics"])
@@ -535,7 +535,7 @@ def test_what_failed_is_computed_again(keep: str, calls: Calls, out: Path) -> No
     calls.fails = lambda work, number: False
     whole = go(table, out)
     assert calls.taken() == [(0.03, 3)]
-    assert not store_path(out).exists()
+    assert not store_folder(out).exists()
     assert_same(whole, go(table, None))
 
 
@@ -558,7 +558,7 @@ def test_where_all_failed_the_first_error_is_raised_and_nothing_written(calls: C
     assert not out.exists()
     calls.fails = lambda work, number: False
     assert (go(small(), out).status == 0).all()
-    assert not store_path(out).exists()
+    assert not store_folder(out).exists()
 
 
 @pytest.mark.parametrize("keep", ["curves", "statistics"])

@@ -13,14 +13,14 @@ from roughmdr.batch.plan import make_plan
 from roughmdr.batch.resume.keys import keys_of
 from roughmdr.scene import read
 
-SCRIPT = Path(__file__).parents[2] / "pipelines" / "batch.py"
+SCRIPT = Path(__file__).parents[2] / "pipelines" / "study.py"
 MEGABYTE = 1e6
 
 
 @pytest.mark.large
 def test_the_batch_study_in_its_quick_form(tmp_path: Path) -> None:
     done = subprocess.run(
-        [sys.executable, SCRIPT, "-o", tmp_path, "--quick"], capture_output=True, text=True, check=False
+        [sys.executable, SCRIPT, "batch", "-o", tmp_path, "--quick"], capture_output=True, text=True, check=False
     )
     assert done.returncode == 0, done.stderr
     assert sorted(path.name for path in tmp_path.iterdir()) == ["batch.nc", "batch.png"]

@@ -132,9 +132,12 @@ def test_returns_are_pairs_of_steps_at_the_same_separation() -> None:
 
 @pytest.mark.large
 def test_any_scene_is_refused_or_right(tmp_path: Path) -> None:
-    script = Path(__file__).parents[2] / "pipelines" / "random_scenes.py"
+    script = Path(__file__).parents[2] / "pipelines" / "study.py"
     done = subprocess.run(
-        [sys.executable, script, "-o", tmp_path, "--quick"], capture_output=True, text=True, check=False
+        [sys.executable, script, "random_scenes", "-o", tmp_path, "--quick"],
+        capture_output=True,
+        text=True,
+        check=False,
     )
     assert done.returncode == 0, done.stderr
     assert (tmp_path / "random_scenes.png").stat().st_size > 5000

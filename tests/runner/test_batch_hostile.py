@@ -1,6 +1,7 @@
 """Batches under hostile treatment: nothing is lost, mixed up or taken for something else."""
 
 import errno
+import json
 import multiprocessing
 import os
 import subprocess
@@ -20,8 +21,7 @@ from test_cli import roughmdr
 import roughmdr as rm
 from roughmdr.batch.moments import Moments
 from roughmdr.batch.plan import make_plan
-from roughmdr.batch.resume.kept import read_kept
-from roughmdr.batch.resume.store import store_path
+from roughmdr.batch.resume.store import store_folder
 from roughmdr.runner.backend import Backend
 from roughmdr.runner.run import execute
 from roughmdr.scene import read
@@ -127,10 +127,10 @@ def test_parts_of_cells_that_are_not_asked_for_stay(tmp_path: Path, monkeypatch:
     out, sweep = tmp_path / "out.nc", {"adhesion.work": [0.01, 0.02, 0.05]}
     whole = few(10, sweep=sweep)
     interrupted(whole, out, 3, monkeypatch, runs_per_task=5)
-    before = read_kept(store_path(out))
-    assert before.runs == 15
+    files = sorted(path.name for path in store_folder(out).glob("*.npz"))
+    assert len(files) == 3
     rm.run(few(10, sweep={"adhesion.work": [0.01]}), out)
-    assert read_kept(store_path(out)) == before
+    assert sorted(path.name for path in store_folder(out).glob("*.npz")) == files
     xr.testing.assert_equal(rm.run(whole, out).force, rm.run(whole).force)
     assert [path.name for path in tmp_path.iterdir()] == ["out.nc"]
 
@@ -138,10 +138,24 @@ def test_parts_of_cells_that_are_not_asked_for_stay(tmp_path: Path, monkeypatch:
 def test_a_cluster_that_is_not_there_costs_nothing(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     out = tmp_path / "out.nc"
     interrupted(few(), out, 3, monkeypatch, runs_per_task=5)
-    before = store_path(out).read_bytes()
+    before = sorted(path.name for path in store_folder(out).iterdir())
     with pytest.raises(rm.RoughmdrError, match="no dask scheduler answers"):
         rm.run(few(), out, scheduler="tcp://127.0.0.1:1", resume=False)
-    assert store_path(out).read_bytes() == before
+    assert sorted(path.name for path in store_folder(out).iterdir()) == before
+
+
+def test_parts_on_another_disk(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    elsewhere = Path("/dev/shm") / f"roughmdr-{os.getpid()}"
+    if not elsewhere.parent.is_dir() or elsewhere.parent.stat().st_dev == tmp_path.stat().st_dev:
+        pytest.skip("there is no other disk here")
+    elsewhere.mkdir()
+    try:
+        store_folder(tmp_path / "out.nc").symlink_to(elsewhere)
+        xr.testing.assert_equal(rm.run(few(), tmp_path / "out.nc").force, rm.run(few()).force)
+    finally:
+        for path in elsewhere.iterdir():
+            path.unlink()
+        elsewhere.rmdir()
 
 
 def test_a_disk_without_locks_will_do(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -151,8 +165,34 @@ def test_a_disk_without_locks_will_do(tmp_path: Path, monkeypatch: pytest.Monkey
         raise OSError(errno.ENOSYS, "Function not implemented")
 
     monkeypatch.setattr(fcntl, "flock", no_locks)
-    interrupted(few(), tmp_path / "out.nc", 3, monkeypatch, runs_per_task=5)
-    assert read_kept(store_path(tmp_path / "out.nc")).runs == 15
+    xr.testing.assert_equal(rm.run(few(), tmp_path / "out.nc").force, rm.run(few()).force)
+    assert [path.name for path in tmp_path.iterdir()] == ["out.nc"]
+
+
+@pytest.mark.parametrize("name", ["lock", "manifest.jsonl"])
+def test_links_in_the_parts_are_not_followed(name: str, tmp_path: Path) -> None:
+    (tmp_path / "precious").write_text("precious")
+    store_folder(tmp_path / "out.nc").mkdir()
+    (store_folder(tmp_path / "out.nc") / name).symlink_to(tmp_path / "precious")
+    with pytest.raises(rm.StoreError, match=r"out\.nc\.parts"):
+        rm.run(few(), tmp_path / "out.nc")
+    assert (tmp_path / "precious").read_text() == "precious"
+
+
+def test_a_pipe_for_a_manifest_is_refused(tmp_path: Path) -> None:
+    store_folder(tmp_path / "out.nc").mkdir()
+    os.mkfifo(store_folder(tmp_path / "out.nc") / "manifest.jsonl")
+    with pytest.raises(rm.StoreError, match="no ordinary file"):
+        rm.run(few(), tmp_path / "out.nc")
+
+
+FIRST = {"scene": "= no TOML", "versions": "1", "replaces": ""}
+
+
+@pytest.mark.parametrize("line", ["[" * 100_000, json.dumps(FIRST), "5", "{}"])
+def test_odd_lines_of_a_manifest(line: str, tmp_path: Path) -> None:
+    store_folder(tmp_path / "out.nc").mkdir()
+    (store_folder(tmp_path / "out.nc") / "manifest.jsonl").write_text(line + "\n")
     xr.testing.assert_equal(rm.run(few(), tmp_path / "out.nc").force, rm.run(few()).force)
     assert [path.name for path in tmp_path.iterdir()] == ["out.nc"]
 

@@ -186,7 +186,7 @@ def test_workers_that_die_and_workers_that_come(tmp_path: Path, folder: Path, cu
 @pytest.mark.large
 def test_without_workers_two_interrupts_end_it(tmp_path: Path, folder: Path) -> None:
     with dask(tmp_path, 0) as cluster, running(Batch(folder, "--scheduler", cluster.address)) as batch:
-        until((folder / "out.nc.parts").exists)
+        until((folder / "out.nc.parts" / "manifest.jsonl").exists)
         time.sleep(0.5)
         for _ in range(2):
             batch.signal_group(signal.SIGINT)

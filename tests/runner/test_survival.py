@@ -4,12 +4,10 @@ import os
 import random
 import shutil
 import signal
-import sqlite3
 import subprocess
-import sys
 import threading
 import time
-from contextlib import closing, suppress
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -19,6 +17,7 @@ import xarray as xr
 from batches import (
     CURVES,
     RUNS,
+    STATISTICS,
     Batch,
     assert_clean,
     assert_no_traceback,
@@ -30,17 +29,14 @@ from batches import (
     mounted,
     running,
     slow_scene,
-    stored,
     until,
     write_scene,
 )
-from click.testing import CliRunner
 from forms import large
 
 import roughmdr as rm
 from roughmdr.batch.plan import make_plan
-from roughmdr.batch.resume.kept import read_kept
-from roughmdr.cli import main
+from roughmdr.batch.resume.store import CheckpointStore
 from roughmdr.runner.backend import Backend
 from roughmdr.runner.run import execute
 from roughmdr.scene import read
@@ -76,71 +72,41 @@ def resume(folder: Path, capsys: pytest.CaptureFixture[str], base: xr.Dataset) -
 # Killed
 
 
-_SUCCESSIVE = """
-import os, sys
-from pathlib import Path
-import roughmdr as rm
-from roughmdr.batch.plan import make_plan
-from roughmdr.runner.backend import Backend
-from roughmdr.runner.run import execute
-from roughmdr.scene import read
-plan = make_plan(read(Path("scene.toml")))
-execute(plan, None, Backend(workers=1))  # compiled and imported once for all
-for workers in map(int, sys.stdin):
-    child = os.fork()
-    if not child:
-        try:
-            execute(plan, Path("out.nc"), Backend(workers=workers, runs_per_task=1))
-        except BaseException as error:
-            print(error, file=sys.stderr)
-            os._exit(1)
-        os._exit(0)
-    print(child, flush=True)
-    print(os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]), flush=True)
-"""
-"""Batches one after the other, one for each line, in processes that are forked, and so begin at once."""
-
-
-@pytest.mark.skipif(not hasattr(os, "fork"), reason="there is no fork here")
-@pytest.mark.parametrize(("keep", "kills"), [("curves", 6), large("curves", 1000), large("statistics", 100)])
-def test_killed_again_and_again_it_comes_to_the_same_bits(tmp_path: Path, keep: str, kills: int) -> None:
-    """At random moments, most of them when something more is kept, some before and some while the result is written."""
-    table = slow_scene(200, count=300, output={"keep": keep})
+@pytest.mark.parametrize(("keep", "kills"), [("curves", 3), large("curves", 14), large("statistics", 6)])
+def test_killed_again_and_again_it_comes_to_the_same_bits(
+    tmp_path: Path, keep: str, kills: int, request: pytest.FixtureRequest
+) -> None:
+    """At random moments, each start the resume of the one before; the last quarter while the result is written."""
+    base = request.getfixturevalue(keep)
     folder, chosen = tmp_path / "batch", random.Random(2012)
-    write_scene(folder, table)
-    base, parts, journal = rm.run(table), folder / "out.nc.parts", folder / "out.nc.parts-journal"
-    before = resumed = finished = journals = 0
-    with subprocess.Popen(
-        [sys.executable, "-c", _SUCCESSIVE], cwd=folder, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True
-    ) as batches:
-        assert batches.stdin is not None
-        assert batches.stdout is not None
-        for kill in range(kills + 1):
-            print(chosen.choice([1, 2, 3]), file=batches.stdin, flush=True)
-            child = int(batches.stdout.readline())
-            if kill < kills:
-                if chosen.random() < 0.8:
-                    more = before + chosen.randint(1, 5)
-                    until(lambda more=more: stored(folder) >= more or (folder / "out.nc").exists())  # type: ignore[misc]
-                time.sleep(chosen.uniform(0.0, 0.05))
-                with suppress(ProcessLookupError):
-                    os.kill(child, signal.SIGKILL)
-            status = int(batches.stdout.readline())
-            assert status in ((0, -signal.SIGKILL) if kill < kills else (0,))
-            resumed += before > 0 and status != 0
-            journals += journal.exists() and journal.stat().st_size > 0
-            now = read_kept(parts).runs if parts.exists() and parts.stat().st_size else 0
-            if (folder / "out.nc").exists():  # whole, from the first moment
-                assert_result(folder, base)
-                (folder / "out.nc").unlink()  # so that the next has something to do
-                finished += 1
-            else:
-                assert now >= before
+    write_scene(folder, CURVES if keep == "curves" else STATISTICS)
+    tasks, before, survived = RUNS // 4, 0, 0
+    for kill in range(kills):
+        late = kill >= 3 * kills // 4
+        batch = Batch(folder, "--workers", chosen.choice([1, 2, 3]))
+        if late:
+            batch.wait_for_lines(tasks)
+            time.sleep(chosen.uniform(0.0, 0.06))
+        elif chosen.random() < 0.15:
+            time.sleep(chosen.uniform(0.0, 2.0))  # anywhere, also before anything is computed
+        else:
+            batch.wait_for_lines(min(len(lines(folder)) + chosen.randint(1, 3), tasks - 4))
+            time.sleep(chosen.uniform(0.0, 0.03))
+        survived += batch.process.poll() is None
+        batch.kill()
+        if (folder / "out.nc").exists():  # whole, from the first moment
+            assert_result(folder, base)
+            (folder / "out.nc").unlink()  # so that the next has something to do
+            before = 0
+        else:
+            now = kept(folder)
+            assert now >= before
             before = now
-        batches.stdin.close()
-    print(f"{kills} kills: {resumed} of batches that went on, {journals} in a transaction, {finished} results")
-    assert resumed > 0.5 * kills
-    assert [path.name for path in folder.iterdir()] == ["scene.toml"]
+    assert survived > 0.8 * kills
+    last = Batch(folder)
+    assert last.succeed() <= RUNS - before
+    assert_result(folder, base)
+    assert_clean(folder)
 
 
 @pytest.mark.large
@@ -148,11 +114,13 @@ def test_killed_between_the_result_and_the_end_of_the_parts(
     left: Path, curves: xr.Dataset, capsys: pytest.CaptureFixture[str]
 ) -> None:
     parts = left / "out.nc.parts"
-    saved = parts.read_bytes()
+    saved = shutil.copytree(parts, left.parent / "saved")
     assert 0 < resume(left, capsys, curves) < RUNS
     written = (left / "out.nc").stat()
-    for content in (saved, b""):
-        parts.write_bytes(content)
+    for missing in ([], ["manifest.jsonl", "000001.npz"], [path.name for path in saved.iterdir()]):
+        shutil.copytree(saved, parts)
+        for name in missing:
+            (parts / name).unlink()
         assert resume(left, capsys, curves) == 0
     assert (left / "out.nc").stat().st_mtime_ns == written.st_mtime_ns
 
@@ -189,97 +157,56 @@ netCDF4.Dataset.__exit__ = sync
     with running(Batch(folder, runs_per_task=runs_per_task, code=halfway)) as batch:
         assert batch.end()[0] == -signal.SIGKILL
     assert not (folder / "out.nc").exists()
-    assert (folder / "out.nc.parts-result").exists()
+    assert [path.name for path in (folder / "out.nc.parts").glob(".roughmdr.*.tmp")]
     assert resume(folder, capsys, curves) == (0 if runs_per_task < RUNS else RUNS)
 
 
 # Damaged
 
 
-def flipped(content: bytes, at: int) -> bytes:
-    return content[:at] + bytes([content[at] ^ 1]) + content[at + 1 :]
-
-
-ROWS = {
-    "a bit of a result": "UPDATE results SET content = flipped(content, 2000) WHERE number = 3",
-    "an odd result": "UPDATE results SET content = 'odd', sha256 = 7 WHERE number = 3",
-    "no result": "DELETE FROM results WHERE number = 3",
-    "every result": "UPDATE results SET content = substr(content, 1, 1000)",
-    "no batch": "DELETE FROM batch",
-}
-
-
-@pytest.mark.few(2)
-@pytest.mark.parametrize("damage", ROWS)
+@pytest.mark.few(1)
+@pytest.mark.parametrize(
+    "damage",
+    [
+        "torn line",
+        *map(large, ["odd lines", "no first line", "file", "no file", "every file"]),
+        "nothing left",
+        "leftovers",
+    ],
+)
 def test_only_what_is_damaged_is_computed_again(
     left: Path, curves: xr.Dataset, capsys: pytest.CaptureFixture[str], damage: str
 ) -> None:
-    had = lines(left)
-    with closing(sqlite3.connect(left / "out.nc.parts")) as database, database:
-        database.create_function("flipped", 2, flipped)
-        database.execute(ROWS[damage])
-    lost = {"every result": sum(had), "no batch": 0}.get(damage, had[2])
-    assert resume(left, capsys, curves) == RUNS - sum(had) + lost
-
-
-@pytest.mark.few(3)
-@pytest.mark.parametrize("damage", ["cut off", "a page", "all but the first page", "emptied", "leftovers"])
-def test_what_can_be_read_of_a_damaged_file_is_used(
-    left: Path, curves: xr.Dataset, capsys: pytest.CaptureFixture[str], damage: str
-) -> None:
-    parts, had = left / "out.nc.parts", sum(lines(left))
-    with closing(sqlite3.connect(parts)) as database:
-        database.execute("SELECT * FROM batch").fetchall()  # no transaction is left to be undone
-        ((page_size,),) = database.execute("PRAGMA page_size")
-    content = parts.read_bytes()
-    middle = len(content) // page_size // 2 * page_size
+    parts, had = left / "out.nc.parts", lines(left)
+    manifest, third = parts / "manifest.jsonl", parts / had[2]["file"]
+    lost = 0
     match damage:
-        case "cut off":
-            parts.write_bytes(content[:middle])
-        case "a page":
-            parts.write_bytes(content[:middle] + bytes(page_size) + content[middle + page_size :])
-        case "all but the first page":
-            parts.write_bytes(content[:page_size] + bytes(len(content) - page_size))
-        case "emptied":
-            parts.write_bytes(b"")
+        case "torn line":
+            manifest.write_bytes(manifest.read_bytes()[:-20])
+            lost = had[-1]["realizations"]
+        case "odd lines":
+            with manifest.open("ab") as file:
+                file.write(b'7\n[]\nnull\n{"file": 3}\n{"file": "x.npz", "sha256": "0"}\n\xff\xfe\n\0\0\0\n{"file": "0')
+        case "no first line":
+            manifest.write_bytes(b"".join(manifest.read_bytes().splitlines(keepends=True)[1:]))
+        case "file":
+            content = bytearray(third.read_bytes())
+            content[len(content) // 2] ^= 1
+            third.write_bytes(content)
+            lost = had[2]["realizations"]
+        case "no file":
+            third.unlink()
+            lost = had[2]["realizations"]
+        case "every file" | "nothing left":
+            for line in had:
+                file = parts / line["file"]
+                os.truncate(file, 0 if damage == "nothing left" else file.stat().st_size // 2)
+            lost = sum(line["realizations"] for line in had)
         case "leftovers":
-            for ending in ("-journal", "-result", "-lock"):
-                (left / f"out.nc.parts{ending}").write_bytes(b"half")
-    used = RUNS - resume(left, capsys, curves)
-    least, most = {"leftovers": (had, had), "cut off": (1, had - 4), "a page": (had // 2, had - 4)}.get(damage, (0, 0))
-    assert least <= used <= most
-
-
-@pytest.mark.parametrize("times", [10, large(1000)])
-def test_whatever_is_done_to_the_file_no_wrong_number_comes_of_it(
-    left: Path, curves: xr.Dataset, tmp_path: Path, times: int
-) -> None:
-    """The result is right, or the file is named with what is to be done."""
-    parts, chosen = left / "out.nc.parts", random.Random(3)
-    with closing(sqlite3.connect(parts)) as database:
-        database.execute("SELECT * FROM batch").fetchall()
-    content, plan, refused = parts.read_bytes(), make_plan(read(left / "scene.toml")), list[str]()
-    for _ in range(times):
-        changed = bytearray(content)
-        end = chosen.choice([100, 4096, len(content)])  # also where the structure is
-        for _ in range(chosen.choice([1, 10, 1000])):
-            changed[chosen.randrange(end)] = chosen.randrange(256)
-        parts.write_bytes(changed[: chosen.choice([len(content), chosen.randrange(len(content))])])
-        done = CliRunner().invoke(main, ["info", str(parts)])
-        assert done.exit_code == 0 or f"{parts}: " in done.stderr, done.output
-        try:
-            execute(plan, left / "out.nc", Backend(runs_per_task=4))
-        except rm.RoughmdrError as error:
-            refused.append(str(error))
-            for path in left.glob("out.nc.parts*"):
-                path.unlink()
-        else:
-            assert_result(left, curves)
-            (left / "out.nc").unlink()
-        assert not list(left.glob("out.nc*"))
-    for said in refused:
-        assert f"{parts}: holds no runs that can be read; remove it" in said or f"{parts}: cannot be written: " in said
-    assert len(refused) < times
+            (parts / "000099.npz.tmp").write_bytes(b"half")
+            (parts / "000098.npz").write_bytes(b"of no line")
+            (parts / ".roughmdr.abc.tmp").write_bytes(b"half a result")
+    assert resume(left, capsys, curves) == RUNS - sum(line["realizations"] for line in had) + lost
 
 
 # Interrupted
@@ -316,7 +243,7 @@ def test_interrupted_twice_it_ends_at_once(folder: Path, capsys: pytest.CaptureF
     endless = slow_scene(64, count=20_000_000)
     write_scene(folder, endless)
     with running(Batch(folder, "--scheduler", scheduler, runs_per_task=1)) as batch:
-        until((folder / "out.nc.parts").exists)
+        until((folder / "out.nc.parts" / "manifest.jsonl").exists)
         if scheduler == "processes":
             until(lambda: len(batch.children()) == 2)
         time.sleep(1.0)
@@ -350,11 +277,11 @@ def test_an_interrupt_while_worker_processes_start(folder: Path, delay: float) -
 def test_an_interrupt_while_the_result_is_written_lets_it_be_written(folder: Path, curves: xr.Dataset) -> None:
     slowly = """
 import os, signal
-import roughmdr.batch.resume.store as store
-def write(*arguments, write=store.write_netcdf):
+import roughmdr.batch.resume.writer as writer
+def write(*arguments, write=writer.write_netcdf):
     os.kill(os.getpid(), signal.SIGINT)
     write(*arguments)
-store.write_netcdf = write
+writer.write_netcdf = write
 """
     with running(Batch(folder, code=slowly)) as batch:
         status, said = batch.end()
@@ -502,8 +429,12 @@ def test_a_full_disk_keeps_what_fits_and_more_room_is_all_it_takes(tmp_path: Pat
         assert "No space left on device; what is finished is kept in out.nc.parts" in said
         assert_no_traceback(said)
         assert not (folder / "out.nc").exists()
-        held = kept(folder)
-        assert 20 < held < 40
+        held = sum(
+            result.realizations
+            for read in CheckpointStore(folder / "out.nc.parts").readers()
+            if (result := read()) is not None
+        )
+        assert 20 < held == kept(folder) < 40
         with running(Batch(folder)) as batch:  # nothing has changed, and so is the answer
             status, said = batch.end()
         assert status in {1, 2}
@@ -540,10 +471,10 @@ def test_a_folder_that_is_none_is_found_before_computing(folder: Path, target: s
     assert [path.name for path in folder.iterdir()] == ["scene.toml"]
 
 
-def remove(path: Path) -> None:
+def remove(folder: Path) -> None:
     def is_removed() -> bool:
-        path.unlink() if path.is_file() else shutil.rmtree(path, ignore_errors=True)
-        return not path.exists()
+        shutil.rmtree(folder, ignore_errors=True)
+        return not folder.exists()
 
     until(is_removed)
 

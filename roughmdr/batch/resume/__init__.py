@@ -1,1 +1,1 @@
-"""Checkpoints of a batch: keys of cells, the file of task results, and their reuse."""
+"""Checkpoints of a batch: keys of cells, the folder of task results, and their reuse."""

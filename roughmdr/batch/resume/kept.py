@@ -1,55 +1,58 @@
-"""Tells what is in OUT.nc.parts without disturbing the run at work there: it changes nothing."""
+"""Tells what is in OUT.nc.parts without disturbing the run at work there: takes no lock, and changes nothing."""
 
+import os
+import platform
+import re
 import shlex
-import shutil
-import sqlite3
 from collections import Counter
-from contextlib import closing, suppress
+from contextlib import suppress
 from datetime import UTC, datetime
 from pathlib import Path
-from tempfile import TemporaryDirectory
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from roughmdr.batch.plan import Plan, make_plan
 from roughmdr.batch.resume.keys import versions
-from roughmdr.batch.resume.store import JOURNAL, LOCK, beside, check_kind, connect, texts
+from roughmdr.batch.resume.store import LOCK, MANIFEST, manifest_lines
 from roughmdr.batch.rounds import Rounds
 from roughmdr.errors import RoughmdrError, StoreError
 from roughmdr.scene import Scene, read
 from roughmdr.schema.toml_text import parse_toml
-from roughmdr.storage.lock import Holder, holder_of
 
 _ENDING = ".parts"
-_PATIENCE = 2.0  # how long [s] a transaction of the run at work is waited for
-_BATCH = "SELECT scene, versions, command, began FROM batch"
-_BY_KEY = "SELECT key, sum(value) FROM results, json_each(results.cells) GROUP BY key"
-_FAILED = "SELECT cell, realization, remark FROM failed ORDER BY number"
+_HOLDER = re.compile(r"process (\d+) on (.*)")
+_LOCKS = Path("/proc/locks")
+"""Linux lists there who holds which lock: class, kind, access, process and DEVICE:DEVICE:INODE."""
+
+
+class Holder(NamedTuple):
+    """The run that holds the lock of a folder."""
+
+    process: int
+    host: str
+    since: str  # ISO 8601, UTC
 
 
 class Kept(NamedTuple):
-    """Finished runs that a file keeps."""
+    """Finished runs that a folder keeps."""
 
-    path: Path
+    folder: Path
     scene: str  # TOML; empty where nothing is kept yet
     versions: str
     command: str  # that began the batch; empty where it is not known
     began: str  # ISO 8601, UTC; empty where it is not known
     last: str  # when something was kept last, likewise
-    by_key: Counter[str]  # runs by the keys of their cells
+    runs: int
+    by_key: Counter[str] | None
+    """Runs by the keys of their cells; None where an earlier version has not noted them."""
     failed: frozenset[tuple[str, int]]  # key and realisation; the next run repeats them
     remark: str  # why the first of them failed
     holder: Holder | None  # None where no run is at work
     holder_known: bool  # whether that can be told on this system
 
     @property
-    def runs(self) -> int:
-        """How many runs are kept."""
-        return self.by_key.total()
-
-    @property
     def output(self) -> Path:
         """The result that the runs belong to."""
-        return self.path.with_name(self.path.name.removesuffix(_ENDING))
+        return self.folder.with_name(self.folder.name.removesuffix(_ENDING))
 
     @property
     def continued_by(self) -> str:
@@ -73,49 +76,39 @@ class Progress(NamedTuple):
     total: int | None  # runs to be computed; None where that is not known, as with [accuracy]
 
 
-def read_kept(path: Path) -> Kept:
-    """Read the file; StoreError where it keeps no runs, or cannot be read."""
-    check_kind(path)
-    holder, known = holder_of(beside(path, LOCK))
-    tables, last = None, ""
+def read_kept(folder: Path) -> Kept:
+    """Read the folder; StoreError where it is no folder of parts, or cannot be read."""
     try:
-        if path.stat().st_size:
-            last = datetime.fromtimestamp(path.stat().st_mtime, UTC).isoformat(timespec="seconds")
-            tables = rows_of(path, _BATCH, _BY_KEY, _FAILED)
-    except FileNotFoundError:  # the batch has just ended
-        pass
+        content = (folder / MANIFEST).read_bytes()
+        last = _utc((folder / MANIFEST).stat().st_mtime)
+    except FileNotFoundError:  # a run has just begun, or has just ended
+        content, last = b"", ""
     except OSError as error:
-        raise StoreError(f"{path}: cannot be read: {error.strerror}") from None
-    except (sqlite3.Error, UnicodeError) as error:
-        remedy = "the next run uses what can be read of it, or says what to do"
-        raise StoreError(f"{path}: cannot be read: {error}; {remedy}") from None
-    if tables is None and not beside(path, LOCK).exists():
-        raise StoreError(f"{path}: holds no runs; if a batch was at work here it has ended, see {path.stem}")
-    batch, by_key, failed = tables or ([], [], [])
-    scene, made_with, command, began = texts(batch[0] if batch else [""] * 4)
-    runs, remark = frozenset(each[:2] for each in failed), texts(failed[0])[2] if failed else ""
-    return Kept(path, scene, made_with, command, began, last, Counter(dict(by_key)), runs, remark, holder, known)
-
-
-def rows_of(path: Path, *queries: str) -> list[list[Any]]:
-    """Return the rows of queries, of one moment; sqlite3.Error, UnicodeError or OSError where it cannot be read.
-
-    A copy is asked where the run was killed, or stands still, while it wrote, and where the disk has no locks.
-    """
-    try:
-        return _read(path, "ro", queries)
-    except sqlite3.OperationalError:
-        with TemporaryDirectory() as folder:
-            shutil.copyfile(path, Path(folder) / path.name)
-            with suppress(FileNotFoundError):
-                shutil.copyfile(beside(path, JOURNAL), Path(folder) / beside(path, JOURNAL).name)
-            return _read(Path(folder) / path.name, "rw", queries, locks=False)
-
-
-def _read(path: Path, mode: str, queries: tuple[str, ...], *, locks: bool = True) -> list[list[Any]]:
-    with closing(connect(path, mode, locks=locks, patience=_PATIENCE)) as database:
-        database.execute("BEGIN")
-        return [database.execute(each).fetchall() for each in queries]
+        raise StoreError(f"{folder}: cannot be read: {error.strerror}") from None
+    holder, known = _holder(folder)
+    if not content and not (folder / LOCK).exists():
+        raise StoreError(f"{folder}: holds no runs; if a batch was at work here it has ended, see {folder.stem}")
+    batch, runs, by_key = dict[str, str](), 0, Counter[str]()
+    failed, remark, counted = set[tuple[str, int]](), "", True
+    for line in manifest_lines(content):
+        match line:
+            case {"scene": str(scene), "versions": str(made_with)}:
+                batch = {"scene": scene, "versions": made_with}
+                batch |= {name: str(line.get(name, "")) for name in ("command", "began")}
+            case {"file": str(), "realizations": int(count)}:
+                runs += count
+                cells = line.get("cells")
+                counted &= isinstance(cells, dict) and all(isinstance(each, int) for each in cells.values())
+                by_key.update(cells if counted else {})
+            case {"failed": list(some), "remark": str(why)}:
+                pairs = (each for each in some if isinstance(each, list) and len(each) == 2)
+                failed |= {(key, run) for key, run in pairs if isinstance(key, str) and isinstance(run, int)}
+                remark = remark or why
+    scene, made_with, command, began = (batch.get(name, "") for name in ("scene", "versions", "command", "began"))
+    kept_by_key = by_key if counted else None
+    return Kept(
+        folder, scene, made_with, command, began, last, runs, kept_by_key, frozenset(failed), remark, holder, known
+    )
 
 
 def progress_of(kept: Kept) -> Progress:
@@ -124,20 +117,53 @@ def progress_of(kept: Kept) -> Progress:
     plan: Plan | None = None
     with suppress(RoughmdrError, ValueError):
         scene = read(parse_toml(kept.scene))
-        if kept.versions == versions():  # else no key is the same
+        if kept.versions == versions() and kept.by_key is not None:  # else no key is the same
             plan = make_plan(scene)
     if scene is None:
         return Progress(None, None, None, [], [], None)
     realizations = 1 if scene.batch.estimator == "expected" else scene.batch.realizations
-    if plan is None:
+    if plan is None or kept.by_key is None:
         total = None if scene.accuracy else realizations * len(scene.cells)
         return Progress(scene, None, realizations, [], [], total)
-    keys = Rounds(plan).keys
+    keys, by_key = Rounds(plan).keys, kept.by_key
     failures = Counter(key for key, _ in kept.failed)
-    done = [sum(kept.by_key[key] for key in of_cell) for of_cell in keys]
+    done = [sum(by_key[key] for key in of_cell) for of_cell in keys]
     failed = [sum(failures[key] for key in of_cell) for of_cell in keys]
     if scene.accuracy is not None:
         return Progress(scene, plan, realizations, done, failed, None)
     failed = [min(some, realizations - count) for some, count in zip(failed, done, strict=True)]
     distinct = len({frozenset(of_cell) for of_cell in keys})  # equal cells are computed once
     return Progress(scene, plan, realizations, done, failed, realizations * distinct)
+
+
+def _holder(folder: Path) -> tuple[Holder | None, bool]:
+    """Return the run at work in a folder, if there is one, and whether that can be told."""
+    try:
+        with (folder / LOCK).open("rb") as file:
+            status, text = os.fstat(file.fileno()), file.read(200).decode(errors="replace").strip()
+    except OSError:
+        return None, True
+    match = _HOLDER.fullmatch(text)
+    if match is None:
+        return None, True
+    holder = Holder(int(match[1]), match[2], _utc(status.st_mtime))
+    if holder.host != platform.node():
+        return holder, False
+    return (holder if _is_locked(status.st_ino, holder.process) else None), True
+
+
+def _is_locked(inode: int, process: int) -> bool:
+    """Return whether a process of this machine holds the lock of a file; where none are listed, whether it lives."""
+    try:
+        words = [line.split() for line in _LOCKS.read_text().splitlines()]
+    except OSError:
+        try:
+            os.kill(process, 0)
+        except OSError as error:
+            return isinstance(error, PermissionError)
+        return True
+    return any(len(word) > 5 and word[4] == str(process) and word[5].endswith(f":{inode}") for word in words)
+
+
+def _utc(seconds: float) -> str:
+    return datetime.fromtimestamp(seconds, UTC).isoformat(timespec="seconds")

@@ -1,0 +1,107 @@
+"""Writes what is finished: task results while a batch runs, in a thread of its own, and the result at its end."""
+
+import os
+from collections import deque
+from concurrent.futures import Future, ThreadPoolExecutor
+from contextlib import ExitStack
+from pathlib import Path
+
+from roughmdr.batch.resume.keys import versions
+from roughmdr.batch.resume.store import CheckpointStore, locked_store, store_folder
+from roughmdr.batch.task_result import TaskResult
+from roughmdr.errors import StoreError
+from roughmdr.storage.labelled import Labelled
+from roughmdr.storage.netcdf_writing import write_netcdf
+from roughmdr.variables import FAILED
+
+_MAX_NAME = 255  # bytes of a file's name
+_MAX_PENDING = 16  # task results that may wait to be written before the batch waits
+
+
+class CheckpointWriter:
+    """Write checkpoints for one output and hold the lock of their folder until the ``stack`` is closed.
+
+    Nothing is written without a ``target``; there is no folder if its name would be too long.
+    """
+
+    def __init__(self, target: Path | None, stack: ExitStack) -> None:
+        self.target, self._stack = target, stack
+        self.store: CheckpointStore | None = None
+        self._cleared, self._replaces = False, ""
+        self._thread: ThreadPoolExecutor | None = None
+        self._pending: deque[Future[None]] = deque()
+        if target is not None and len(os.fsencode(store_folder(target).name)) <= _MAX_NAME:
+            self.store = stack.enter_context(locked_store(target))
+
+    def clear(self) -> None:
+        """Remove the checkpoints of an earlier run; the file that is at the output now, if one is, may be replaced."""
+        self._cleared, self._replaces = True, _stamp(self.target)
+        if self.store is not None:
+            self.store.clear()
+
+    def begin(self, scene: str, command: str) -> None:
+        """Write checkpoints of this scene from now on; StoreError where there is no folder for them.
+
+        ``command`` is what continues the batch, but for --fresh.
+        """
+        if self._thread is None and self.target is not None:
+            if self.store is None:
+                raise StoreError(f"{self.target}: the name is too long for a folder of parts; give a shorter one")
+            self.store.begin(scene, versions(), self._replaces, command)
+            self._thread = self._stack.enter_context(ThreadPoolExecutor(1, "roughmdr-writer"))
+
+    @property
+    def begun(self) -> bool:
+        """Whether checkpoints are written."""
+        return self._thread is not None
+
+    def may_replace(self, scene: str) -> bool:
+        """Return whether this resumes a batch of this scene that was allowed to replace the file at the output."""
+        store = self.store
+        return store is not None and store.scene == scene and store.replaces == _stamp(self.target) != ""
+
+    def put(self, result: TaskResult) -> None:
+        """Write a task result, and note its failed runs, if checkpoints are written; StoreError where that fails."""
+        if self._thread is None or self.store is None:
+            return
+        failed = result.diagnostics["status"] == FAILED
+        if failed.any():
+            runs = [(result.keys[result.cell[row]], int(result.first[row])) for row in failed.nonzero()[0]]
+            remark = str(result.diagnostics["remark"][failed][0])
+            self._pending.append(self._thread.submit(self.store.note_failed, runs, remark))
+        if not failed.all():
+            done = result.select_rows((~failed).nonzero()[0])
+            self._pending.append(self._thread.submit(self.store.write, done))
+        while self._pending and (self._pending[0].done() or len(self._pending) > _MAX_PENDING):
+            self._pending.popleft().result()
+
+    def flush(self) -> None:
+        """Wait until all task results are on the disk."""
+        while self._pending:
+            self._pending.popleft().result()
+
+    def finish(self, result: Labelled, *, complete: bool) -> None:
+        """Write the result; remove the checkpoints if it is ``complete``: no run failed, and all of them are in it."""
+        if self.target is None:
+            return
+        self.flush()
+        folder = None if self.store is None else self.store.folder  # the next run removes what is left behind there
+        if folder is not None and folder.stat().st_dev != self.target.parent.stat().st_dev:
+            folder = None  # a result cannot be renamed from one disk to another
+        write_netcdf(result, self.target, folder)
+        if self.store is not None and complete:
+            self.store.clear()
+
+    @property
+    def saved_message(self) -> str:
+        """Message that tells which runs are kept, and where; empty if none are."""
+        if self.store is None or self.store.empty or not self.store.folder.is_dir():
+            return ""
+        again = "the same command without --fresh" if self._cleared else "the same command"
+        return f"what is finished is kept in {self.store.folder}; {again} goes on from there"
+
+
+def _stamp(path: Path | None) -> str:
+    """Return length [byte] and time [ns] of a file, which tell it from one that replaces it; empty where none is."""
+    status = path.stat() if path is not None and path.exists() else None
+    return f"{status.st_size} {status.st_mtime_ns}" if status else ""
