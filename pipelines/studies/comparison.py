@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 Variable = tuple[tuple[str, ...], Floats, dict[str, str]]
 """Dimensions, values and attributes."""
 FACTOR = 3.0
-"""Within which a stated error is to be of the true one."""
+"""Largest ratio of the stated and the true error, either way, at which the stated one is near."""
 PAIRS: dict[int, Any] = {order: {"model": "pairwise", "order": order} for order in (1, 2)}
 """Interactions in pairs, by their order."""
 
@@ -77,9 +77,9 @@ class Held(NamedTuple):
 
     number: int
     bounded: float
-    """Share of the errors that the stated one bounds,"""
+    """Share of the errors that the stated one bounds."""
     within: float
-    """and that are within FACTOR of it."""
+    """Share of the errors that are within FACTOR of the stated one."""
 
     @property
     def cells(self) -> list[str]:

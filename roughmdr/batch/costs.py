@@ -50,10 +50,10 @@ _JUMP, _JUMP_VISITS, _JUMP_VISITS_PROFILE = 3e-5, 4.0, 24.0
 paraboloids 1.6 to 5.4 (2000 to 7600 contacts), of spheres 23 to 27 (190 to 2700), on each leg."""
 _HEIGHTS = 1000  # asperities that are drawn to tell which share touches
 _MEAN_FIELD_PASSES = 6  # factor on independent asperities: Newton's method takes all steps at once
-# Asperities that feel each other in pairs: to begin, each separation of the path (which is solved once), and for each
-# of the asperities there (``pipelines/study.py coupling``).
+# Seconds of asperities that feel each other in pairs: to begin, each separation of the path (solved once), and each
+# asperity there (``pipelines/study.py coupling``).
 _PAIRWISE_BEGIN, _PAIRWISE_STEP, _PAIRWISE_VISIT = 5e-2, 5e-3, 1.5e-5
-# With adhesion: a step of the path, and each contact that is made and lost, the longer the more asperities there are.
+# Seconds with adhesion: a step of the path, and each contact that is made and lost, which grows with their number.
 _ADHERING_STEP, _ADHERING, _ADHERING_SQUARE = 1.1e-3, 3.7e-3, 7.5e-9
 _GRID_STEP = 1.2  # seconds of a separation by boundary elements, should they be needed
 _FIND_HILL = 2e-3  # seconds to find a hill, where each realisation has a map of its own

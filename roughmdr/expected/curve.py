@@ -162,7 +162,7 @@ def tabulate(
 def branch_ends(contact: Contact) -> tuple[list[float], list[float]]:
     """Return x where each stable branch begins, and where each but the last ends."""
     params = contact.params
-    if not contact.kernels.branched or params.size < -layout.TOP_X:  # those of a punch hold one branch only
+    if not contact.kernels.branched or params.size < -layout.TOP_X:  # params of a punch hold one branch only
         return [0.0], []
     count = int(params[layout.COUNT])
     feet = np.maximum(params[layout.FOOT_X : layout.FOOT_X + count], 0.0).tolist()

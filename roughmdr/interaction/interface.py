@@ -87,7 +87,7 @@ class CoupledKernels(Kernels):
     load_alone: Callable[..., None]
     respond: Callable[..., int]
 
-    # Of adhesive contacts alone:
+    # Kernels of adhesive contacts alone:
     strain: Callable[..., float]
     """(t, params) -> ∫ (g(a) - g)^2 dx over natural size and depth^2."""
     held: Callable[..., float]

@@ -9,7 +9,7 @@ from roughmdr.schema.quantities import Quantity
 
 Model = Literal["jkr", "dugdale"]
 AskedModel = Literal[Model, "auto"]
-PAPERS = {"jkr": ("Johnson1971",), "dugdale": ("Maugis1992", "Dugdale1960")}  # by model: keys in report/papers.bib
+PAPERS = {"jkr": ("Johnson1971",), "dugdale": ("Maugis1992", "Dugdale1960")}  # keys in report/papers.bib, by model
 DEFAULT_ERROR = 0.01  # default error of the force of "auto", over the largest force
 WORK = Quantity("J/m^2", at_least=0.0)
 STRENGTH = Quantity("Pa", above=0.0)

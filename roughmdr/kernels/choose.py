@@ -40,7 +40,7 @@ def _closed(shape: str, adhesive: bool) -> Kernels:
     kernels.adhesive = adhesive
     kernels.alike = shape != "power_law"
     vars(kernels).update(prepare=scalar.prepare, params_of=scalar.params_of, heterogeneous=scalar.heterogeneous)
-    kernels.hardening = not adhesive or shape != "power_law"  # of JKR power laws only those with n >= 0.768
+    kernels.hardening = not adhesive or shape != "power_law"  # JKR power laws harden for n >= 0.768 only
     kernels.found_together = "radius_force_stiffness" in vars(kernels)
     if not kernels.found_together:
         kernels.radius_force_stiffness = specialise(scalar.radius_force_stiffness, kernels)

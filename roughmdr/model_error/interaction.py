@@ -61,7 +61,7 @@ def poisson_overlap(radius: Floats, nominal_area: float) -> float:
     """
     side = math.sqrt(nominal_area)
     a = radius / side
-    with np.errstate(over="ignore"):  # of infinitely many contacts all overlap
+    with np.errstate(over="ignore"):  # infinitely many contacts all overlap
         reached = math.pi * a.size * (a * a + 2.0 * a * np.mean(a) + np.mean(a * a))
     return float(-np.mean(np.expm1(-reached)))
 

@@ -98,7 +98,7 @@ def draw_contact(contact: OneContact, force: float, title: str, notes: list[str]
     load.set(xlim=(-half, half), xlabel=length.label)
     set_title(figure, title, [*notes, *_numbers(contact, force)])
     figure.legend(loc="outside lower center", ncols=3, frameon=False, fontsize=8)
-    figure.draw_without_rendering()  # this lays out the panels
+    figure.draw_without_rendering()  # panels are laid out here
     names = "profile and surface of the half-space", "MDR profile g(x) on its row of springs"
     for ax, height, name in zip((profile, row), heights, names, strict=True):
         ax.set_title(f"{name}; {_exaggeration(ax, height, length)}", fontsize=9, loc="left")

@@ -45,7 +45,7 @@ def meanings(section: type[Section]) -> dict[str, str]:
     """Return the text below each key of a section, and of those that it is made of, by the names of the keys."""
     told: dict[str, str] = {}
     for part in reversed([each for each in section.__mro__ if issubclass(each, Section)]):
-        with suppress(OSError):  # of sections that are made, and have no source
+        with suppress(OSError):  # a section that is made by code has no source
             definition = ast.parse(dedent(inspect.getsource(part))).body[0]
             assert isinstance(definition, ast.ClassDef)
             for declared, text in pairwise(definition.body):
