@@ -10,7 +10,7 @@ from roughmdr.errors import OutOfRange
 from roughmdr.numerics.arguments import Floats
 from roughmdr.numerics.jit import njit
 
-_JAMMING_COVERAGE = 0.547  # share of the plane under random discs when no more fit (J. Feder, J. Theor. Biol. 87, 237)
+_JAMMING_COVERAGE = 0.547  # share of the plane that jammed random discs cover (J. Feder, J. Theor. Biol. 87 (1980) 237)
 _MAX_TRIES = 2**10  # candidates for one point, on average, before the patch counts as full
 
 
