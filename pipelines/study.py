@@ -15,7 +15,8 @@ from roughmdr.storage.files import replace_atomically
 
 TOGETHER = (
     "work_precision", "coupling", "stability", "left_out", "stated_error", "random_scenes", "versus_bem",
-    "conductance", "versus_adhesive_bem", "coupled_pull_off", "hills", "adhesive_hills", "spectrum", "trust", "traps",
+    "conductance", "at_pressure", "versus_adhesive_bem", "coupled_pull_off", "hills", "adhesive_hills", "spectrum",
+    "trust", "traps",
 )  # fmt: skip
 """Studies that "all" carries out, one after the other."""
 MODULES = {

@@ -128,6 +128,8 @@ def load_separation(
     data = {name: Array(("step",), values, LAW_VARIABLES[name].attrs) for name, values in result.variables.items()}
     errors = {"numerical_error": result.numerical_error, **result.model_error.named}
     errors["effective_contacts"] = result.effective_contacts
+    if asperities.nominal_area is not None:
+        errors["nominal_area"] = asperities.nominal_area
     if coupling is not None and coupling.model == "pairwise":
         names_of_coupling = ["overlap_count", "marked_steps", "grid_points"]
         names_of_coupling += ["avalanche_count", "avalanche_size_max"] if asked.work > 0.0 else []

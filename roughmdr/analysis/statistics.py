@@ -13,9 +13,11 @@ from roughmdr.loading.path import LoadingPath
 from roughmdr.numerics.arguments import Floats
 from roughmdr.result.cells import of_cells
 from roughmdr.result.curves import result_of, stored_curves
+from roughmdr.result.model_errors import FORCES, SUFFIX, errors_along
 from roughmdr.result.view import ResultView
 from roughmdr.scene import Scene
 from roughmdr.schema.toml_text import parse_toml
+from roughmdr.storage.labelled import Labelled
 from roughmdr.variables import (
     DONE,
     INFINITE_VARIANCE,
@@ -33,6 +35,8 @@ if TYPE_CHECKING:
 
 _OVER_CELLS = ("pull_off_count", "pull_off_force_of_mean", "pull_off_pressure_of_mean", "nominal_area")
 _ERROR = "_interpolation_error"
+_ERRORS = (_ERROR, SUFFIX)
+"""Endings of the names of errors, whose statistic is the largest."""
 _OF_CURVES = ("cell_key", "remark")
 """Coordinates that describe the runs whose curves were kept."""
 
@@ -77,6 +81,9 @@ def statistics(dataset: "xr.Dataset") -> "xr.Dataset":
     bare = {name: array.reset_coords(drop=True) for name, array in found.items()}
     coordinates = {name: dataset[name].variable for name in kept}
     reduced = xr.Dataset(bare, coords=coordinates, attrs=attrs)
+    if result.control in FORCES:
+        errors = errors_along(ResultView(Labelled.of(reduced)))
+        reduced = reduced.assign({name: (array.dims, array.values, array.attrs) for name, array in errors.items()})
     return reduced.set_coords("remark") if "remark" in bare else reduced
 
 
@@ -92,7 +99,7 @@ def _of_found(dataset: "xr.Dataset") -> "xr.Dataset":
     found: dict[str, xr.DataArray] = {}
     for name in map(str, dataset.data_vars):
         array = dataset[name]
-        if name.endswith(_ERROR):
+        if name.endswith(_ERRORS):
             found[name] = array.max("realization", keep_attrs=True) if "realization" in array.dims else array
         else:
             found |= _statistics(dataset, name, array.notnull())

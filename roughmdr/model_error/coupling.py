@@ -16,8 +16,9 @@ _CROWDED = 5.0
 order that error cancels a part of the error by terms left out."""
 _TYPICAL_CROWDING = 0.15
 """Crowding over the share of the force of overlapping contacts, where their distances are not known."""
-_SUMMITS = 1.3
-"""Error of summits, over the root of the contact fraction: flanks of a continuous surface are no paraboloids."""
+_LIGHT_SUMMITS, _SUMMITS = 0.1, 0.7
+"""Error of summits at light contact, and what is added over the root of the contact fraction: flanks of a continuous
+surface are no paraboloids (``pipelines/study.py at_pressure``)."""
 
 _HILLS = 0.06
 """Error of the hills of an isotropic map, from 0.3 to 20 % contact (``pipelines/study.py hills``); it grows as the root
@@ -72,7 +73,9 @@ def foreseen_error(contact_fraction: float, overlap: float) -> float:
 
 def summits_error(contact_fraction: Floats, origin: Origin) -> Floats:
     """Return the part of it that asperities cause by standing for the summits of a surface [1]."""
-    return np.asarray((_SUMMITS if origin == "summits" else 0.0) * np.sqrt(contact_fraction))
+    if origin != "summits":
+        return np.zeros_like(contact_fraction)
+    return np.where(contact_fraction > 0.0, _LIGHT_SUMMITS + _SUMMITS * np.sqrt(contact_fraction), 0.0)
 
 
 def coupling_warnings(contact_fraction: float, overlap: float, marked: float, *, on_grid: bool = False) -> list[str]:

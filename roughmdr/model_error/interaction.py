@@ -22,6 +22,8 @@ class Coefficients(NamedTuple):
     """About the median."""
     estimate: float
     """Few errors are larger than this, with the contact fraction itself added (``interaction_error``)."""
+    least: float = 0.0
+    """Error at light contact, which is added wherever there is contact, to a typical error by half."""
 
 
 ASPERITIES = Coefficients(low=0.5, typical=0.85, estimate=1.4)
@@ -30,7 +32,7 @@ equal contacts with spacing L and load P is pressed 3.9003 P/(pi E* L) deeper ag
 alone.
 """
 
-SUMMITS = Coefficients(low=1.5, typical=1.9, estimate=2.0)
+SUMMITS = Coefficients(low=0.5, typical=0.8, estimate=1.5, least=0.1)
 """Coefficients of the summits of a continuous surface, whose flanks are no paraboloids."""
 
 TENSION, MOST_TENSION = 0.2, 1.1
@@ -51,7 +53,8 @@ def interaction_error(contact_fraction: Floats, coefficients: Coefficients = ASP
     ``contact_fraction`` is the summed contact area over the nominal area, shape (n,). Where boundary elements find full
     contact, from 0.3 to 0.5 on, the error is the whole force.
     """
-    return np.minimum(coefficients.estimate * np.sqrt(contact_fraction) + contact_fraction, 1.0)
+    least = np.where(contact_fraction > 0.0, coefficients.least, 0.0)
+    return np.minimum(least + coefficients.estimate * np.sqrt(contact_fraction) + contact_fraction, 1.0)
 
 
 def poisson_overlap(radius: Floats, nominal_area: float) -> float:

@@ -9,6 +9,7 @@ from roughmdr.asperity.validity import ValidityLimits
 from roughmdr.ensemble.ensemble import Origin
 from roughmdr.model_error.interaction import OF_ORIGIN, interaction_error
 from roughmdr.numerics.arguments import Floats
+from roughmdr.variables import ORIGINS
 
 TRUSTED_FRACTION = 0.02
 """Contact fraction up to which a result is called trusted: the error by interaction is 22 % at most, typically 12 %."""
@@ -66,6 +67,8 @@ class ModelError(NamedTuple):
     """
     overlap: float
     """Share of the contacts that reach into a neighbour's; NaN where it is not known."""
+    origin: Origin = "asperities"
+    """Where the asperities come from."""
 
     @property
     def named(self) -> dict[str, float]:
@@ -76,6 +79,7 @@ class ModelError(NamedTuple):
             "overlap_fraction": self.overlap,
             "largest_contact_fraction": self.largest_fraction,
             "trusted_separation": self.trusted_separation,
+            "asperity_origin": ORIGINS.index(self.origin),
         }
 
     @classmethod
@@ -97,7 +101,8 @@ class ModelError(NamedTuple):
         }
         if contact_fraction is None:
             curve = np.where(force != 0.0, math.nan, 0.0)
-            return cls(curve, {"interaction_error": math.nan, **constant}, math.nan, math.nan, math.nan)
+            nothing = {"interaction_error": math.nan, **constant}
+            return cls(curve, nothing, math.nan, math.nan, math.nan, assumptions.origin)
         coupled, known = assumptions.coupling_error, assumptions.neighbours_error
         coefficients = OF_ORIGIN[assumptions.origin]
         if coupled is None:
@@ -116,4 +121,5 @@ class ModelError(NamedTuple):
             float(np.nanmax(contact_fraction, initial=0.0)),
             float(beyond.max()) if beyond.size else math.nan,
             assumptions.overlap,
+            assumptions.origin,
         )

@@ -8,6 +8,7 @@ import numpy as np
 
 from roughmdr.errors import StoreError
 from roughmdr.numerics.arguments import Floats
+from roughmdr.result.model_errors import SUFFIX, errors_along
 from roughmdr.result.view import Leg, ResultView
 from roughmdr.schema.wording import suggestion
 from roughmdr.variables import CURVE_VARIABLES, LAW_VARIABLES, OVER_AREA, TIME
@@ -71,7 +72,7 @@ class Curve(NamedTuple):
     middle: Floats  # mean over the realisations; of a stiffness where contacts detach the median
     low: Floats  # two standard errors below it, or the lower edge of the band of a median; NaN if there is none
     high: Floats
-    model_error: Floats  # of a force, in its unit; NaN where it is not known, or of other variables
+    model_error: Floats  # in its unit; NaN where it is not known
     runs: Floats  # [realization, step]; computed ones, none if only statistics were kept, and of a median
     runs_x: Floats
 
@@ -168,21 +169,15 @@ def _mean(result: ResultView, name: str) -> tuple[Floats, Floats]:
 
 
 def _model_error(result: ResultView, name: str, mean: Floats) -> Floats:
-    """Return the model error of a mean force; NaN where it is not known, or of other variables.
-
-    Its parts by JKR are over the largest force of the path.
-    """
-    curve = "model_error_curve"
-    if name not in ("force", "pressure") or not result.holds(curve):
+    """Return the error of the model of a mean, of a result with the error at each step; NaN where it is not known."""
+    if not result.holds("model_error_curve"):
         return np.full_like(mean, np.nan)
-    error, size = result.mean(curve)[0], np.abs(mean)
-    hills = result.adheres and np.isnan(_largest(result, "overlap_fraction"))
-    by_jkr = np.where(hills, np.inf, _largest(result, "adhesion_range_error"))[..., None]
-    over_largest = np.minimum(error, by_jkr)
-    return np.asarray(size * (error - over_largest) + np.fmax.reduce(size, axis=-1, keepdims=True) * over_largest)
-
-
-def _largest(result: ResultView, name: str) -> Floats:
-    """Return the largest of a diagnostic over the realisations of each cell; NaN where none is known."""
-    array = result.variables[name]
-    return np.asarray(np.fmax.reduce(array.values, axis=-1) if "realization" in array.dims else array.values)
+    suffix = "_mean" if result.keeps_statistics else ""
+    error = errors_along(result).get(f"{name}{suffix}{SUFFIX}")
+    if error is None:
+        return np.full_like(mean, np.nan)
+    if "realization" not in error.dims:
+        return np.asarray(error.values)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", RuntimeWarning)  # steps that no realisation has
+        return np.asarray(np.nanmean(error.values, axis=error.dims.index("realization")))

@@ -141,7 +141,7 @@ def _entries(result: ResultView, names: Sequence[str], *, marked: bool, shaded: 
         entries.append(Patch(color=blue, alpha=0.12, lw=0, label="9 of 10 realisations"))
     if "stiffness" in names and "unloading" in branches and result.adheres:
         entries.append(Patch(color=BRANCH_COLOURS["unloading"], alpha=0.3, lw=0, label="stiffness: median, 2 of 3"))
-    if result.holds("model_error_curve") and not {"force", "pressure"}.isdisjoint(names):
+    if result.holds("model_error_curve"):
         entries.append(Patch(color="0.5", alpha=0.4, lw=0, label="error of the model"))
     if shaded:
         entries.append(Patch(color="0.5", alpha=0.2, lw=0, label="beyond the range of trust"))

@@ -57,6 +57,7 @@ class CellTable(TypedDict):
     pull_off: PullOffTable | None
     model_error: float
     parts: dict[str, float]  # of the model error, by their names in results
+    at_given_pressure: dict[str, float]  # largest relative model errors of other variables there, by their names
     largest_contact_fraction: float
     effective_contacts: float  # that carry the load at closest approach
     trusted_separation: float  # [m]
@@ -117,6 +118,7 @@ class ForeseenTable(TypedDict):
     adhesion: str
     model_error: float
     parts: dict[str, float]
+    at_given_pressure: dict[str, float]
     largest_contact_fraction: float
     effective_contacts: float  # that carry the load at closest approach
     contact_fraction_at_pull_off: float

@@ -13,6 +13,7 @@ from roughmdr.report.documents import ForeseenTable, PlanTable, trust_table
 from roughmdr.report.prospect import implausible_lines, largest_tension, pressure_at_closest, prospect_lines
 from roughmdr.report.result_document import coordinate_tables, swept_table
 from roughmdr.report.summary import counted, motion_lines
+from roughmdr.result.trust import largest_at_force
 from roughmdr.schema.units import format_quantity
 from roughmdr.schema.wording import format_bytes, format_seconds, format_table, printable, under
 from roughmdr.variables import LATERAL
@@ -139,6 +140,7 @@ def _foreseen(plan: Plan, cell: Foreseen) -> ForeseenTable:
         "adhesion": cell.law.model,
         "model_error": error.named["model_error"],
         "parts": dict(error.parts),
+        "at_given_pressure": largest_at_force({**error.named, "grid_points": cell.law.grid_points}),
         "largest_contact_fraction": error.largest_fraction,
         "effective_contacts": cell.law.effective_contacts,
         "contact_fraction_at_pull_off": cell.fraction_at_pull_off,

@@ -15,7 +15,9 @@ from roughmdr.batch.rounds import CellMethod
 from roughmdr.model_error import fraction_warnings
 from roughmdr.model_error.coupling import coupling_warnings
 from roughmdr.numerics.arguments import Floats
+from roughmdr.result.model_errors import FORCES, errors_along
 from roughmdr.result.pull_off import pull_off_numbers
+from roughmdr.result.view import ResultView
 from roughmdr.scene.sections import Accuracy
 from roughmdr.storage.labelled import Array, Labelled
 from roughmdr.storage.result_file import provenance
@@ -95,6 +97,8 @@ def assemble(
     if warnings:
         attrs["warnings"] = "\n".join(warnings)
     result = Labelled(data, coordinates, {**provenance(scene.title, command), **attrs})
+    if plan.control in FORCES:
+        data |= errors_along(ResultView(result))
     return result._replace(attrs={**result.attrs, "checksum": result.checksum()})
 
 

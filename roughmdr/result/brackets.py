@@ -49,8 +49,8 @@ def _first(y: Floats, value: float, before: Ints, usable: NDArray[np.bool_]) -> 
 
 def interpolate(
     curve: Floats, reached: Floats, path: Floats, brackets: Floats, *, branch: Branch, in_jumps: bool
-) -> tuple[Floats, Floats]:
-    """Return curves at brackets [..., value, part] of curves that are ``reached``, with their errors.
+) -> tuple[Floats, Floats, Floats]:
+    """Return curves at brackets [..., value, part] of curves that are ``reached``, their errors and changes there.
 
     Curves and the ``path``, the controlled quantity, are [..., step]; the returned arrays [..., value]. A bracket gives
     a line, the curve over the reached one. The error is the deviation of the curve from that line between the steps;
@@ -72,7 +72,7 @@ def interpolate(
             around = np.where(there, _at(curve, near) - slope * way, np.nan)
             off = sum(off_line(_at(path, near), around, spreads=AT_A_PLACE))
             error = np.where(np.isnan(off), error, off)
-    return value, np.where(np.isnan(value), np.nan, error)
+    return value, np.where(np.isnan(value), np.nan, error), np.where(known, rise, np.nan)
 
 
 def _near(lower: Ints, upper: Ints, branch: Branch) -> tuple[Ints, NDArray[np.bool_]]:

@@ -19,6 +19,7 @@ from roughmdr.result.curves import (
     stored_curves,
     whole,
 )
+from roughmdr.result.model_errors import SUFFIX, at_given, attributes, errors_over_steps, kept_by
 from roughmdr.result.view import ResultView
 from roughmdr.schema.arguments import check_values
 from roughmdr.variables import LAW_VARIABLES, SEPARATION
@@ -57,25 +58,49 @@ def at_value(dataset: "xr.Dataset", name: str, values: ArrayLike, branch: str) -
         output_dtypes=[np.float64],
         dask_gufunc_kwargs={"output_sizes": {_BRACKET: 3}},
     )
-    found: dict[str, xr.DataArray] = {}
-    for label, array in _curves(result, name).items():
-        value, error = xr.apply_ufunc(
+
+    def there(array: "xr.DataArray", *, in_jumps: bool = False) -> "tuple[xr.DataArray, ...]":
+        """Return a curve where the value is reached, its interpolation error, and its change over that step."""
+        found: tuple[xr.DataArray, ...] = xr.apply_ufunc(
             interpolate,
             array,
             reached,
             path,
             brackets,
-            kwargs={"branch": on, "in_jumps": label.removesuffix("_mean") in _IN_JUMPS},
+            kwargs={"branch": on, "in_jumps": in_jumps},
             input_core_dims=[["step"], ["step"], ["step"], [name, _BRACKET]],
-            output_core_dims=[[name], [name]],
+            output_core_dims=[[name]] * 3,
             keep_attrs=False,
             dask="parallelized",
-            output_dtypes=[np.float64, np.float64],
+            output_dtypes=[np.float64] * 3,
         )
+        return found
+
+    found: dict[str, xr.DataArray] = {}
+    curves, changes = _curves(result, name), {name: there(reached)[2]}
+    for label, array in curves.items():
+        value, error, changes[label] = there(array, in_jumps=label.removesuffix("_mean") in _IN_JUMPS)
         attrs = {key: array.attrs[key] for key in ("units", "long_name") if key in array.attrs}
         about = {"long_name": f"interpolation error of the {attrs['long_name']}"}
         found[label] = value.assign_attrs(attrs | {"ancillary_variables": f"{label}_interpolation_error"})
         found[f"{label}_interpolation_error"] = error.assign_attrs(attrs | about)
+    errors = errors_over_steps(result, curves | {name: reached})
+    if errors:
+        bare = {label.removesuffix("_mean"): label for label in errors}
+        kept = bare[kept_by(name, bare)]
+    for label in errors.keys() - {name}:
+        error = xr.apply_ufunc(
+            at_given,
+            there(errors[label])[0],
+            changes[label],
+            there(errors[kept])[0],
+            changes[kept],
+            kwargs={"name": label.removesuffix("_mean"), "given": name},
+            keep_attrs=False,
+            dask="parallelized",
+            output_dtypes=[np.float64],
+        )
+        found[f"{label}{SUFFIX}"] = error.assign_attrs(attributes(label.removesuffix("_mean"), name))
     coordinate = (name, points.values, {"units": units, "long_name": LAW_VARIABLES[name].long_name})
     points_found = xr.Dataset(found, attrs=_attributes(dataset, name, branch)).assign_coords({name: coordinate})
     return points_found if np.ndim(wanted) else points_found.isel({name: 0})

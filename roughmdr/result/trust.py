@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from roughmdr.model_error.at_force import NAMES, relative_at_force
 from roughmdr.model_error.coupling import MARKED_SHARE, foreseen_error, summits_error
 from roughmdr.model_error.interaction import (
     ASPERITIES,
@@ -36,6 +37,10 @@ _OPENINGS = {
     "mean_field": "asperities feel each other's mean displacement only: force at given separation off by",
 }
 _NAMES = {"model_error", *PARTS, "largest_contact_fraction", "trusted_separation", "overlap_fraction"}
+_BESIDES = {"grid_points", "asperity_origin"}
+_BESIDE_PARTS = ("interaction_error", "largest_contact_fraction", "asperity_origin")
+_AT_FORCE = dict.fromkeys((*PARTS, *_BESIDE_PARTS))
+"""Numbers from which errors at given force follow."""
 _BY_FRACTION = {"interaction_error", "largest_contact_fraction", "overlap_fraction"}
 _AT_PULL_OFF = "pull_off_contact_fraction"
 
@@ -82,9 +87,10 @@ def trust_lines(
     if not (known["model_error"] > 0.0).any():
         yield "trust", "no contact along the whole path"
         return
+    at_force = _at_force(numbers, asperities=interaction != "pairwise" and coefficients is ASPERITIES)
     if interaction == "pairwise":
         yield "model error", _coupling(known, summits)
-        yield from under("", others)
+        yield from under("", [*at_force, *others])
         yield "trust", _trust_coupled(known, summits)
         return
     if coefficients is None:
@@ -95,7 +101,7 @@ def trust_lines(
         yield from (("", f"and by {error}") for error in errors[1:])
         if len(places) > 1:
             yield "", _pull_off_error(tension)
-    yield from under("", others)
+    yield from under("", [*at_force, *others])
     yield "trust", _trust(known, coefficients, interaction)
     lone = known["interaction_error"].max() == 0.0
     if advise and interaction is None and not (tension.size or lone):
@@ -105,7 +111,7 @@ def trust_lines(
 def trust_of_result(result: ResultView) -> Iterator[tuple[str, str]]:
     """Yield the lines of all runs of a result; for one of an earlier version, that the error is not known."""
     if set(result.variables) >= _NAMES:
-        numbers = {name: result.variables[name].values for name in (_NAMES | {"grid_points"}) & set(result.variables)}
+        numbers = {name: result.variables[name].values for name in (_NAMES | _BESIDES) & set(result.variables)}
         interaction = result.attrs.get("interaction")
         unlike = any(stage.unlike for stage in stages_in(result.scene))
         advise = LATERAL.name not in result.coordinates and not unlike
@@ -119,6 +125,35 @@ def trust_of_result(result: ResultView) -> Iterator[tuple[str, str]]:
         )
     else:
         yield "trust", "not known: the result was computed by a version that did not estimate the error of its model"
+
+
+def largest_at_force(numbers: Numbers) -> dict[str, float]:
+    """Return the largest relative errors of quantities at given force [1], by their names; none of earlier versions."""
+    if "asperity_origin" not in numbers:
+        return {}
+    of_runs = {name: np.asarray(numbers[name], dtype=np.float64)[..., None] for name in _AT_FORCE}
+    interaction, fraction, origin = (of_runs.pop(name) for name in _BESIDE_PARTS)
+    grid = np.asarray(numbers.get("grid_points", math.nan))[..., None]
+    others = np.add.reduce([*of_runs.values()])
+    found = relative_at_force(interaction, fraction, others, origin, np.isfinite(grid))
+    return {name: float(_known(each).max(initial=0.0)) for name, each in zip(NAMES, found, strict=True)}
+
+
+def at_force_of_result(result: ResultView) -> dict[str, float]:
+    """Return these of all runs of a result."""
+    held = {name: result.variables[name].values for name in (*_AT_FORCE, "grid_points") if name in result.variables}
+    return largest_at_force(held)
+
+
+def _at_force(numbers: Numbers, *, asperities: bool) -> list[str]:
+    """Return in words the errors at given pressure; of independent ``asperities`` their signs are known."""
+    shares = [_percent(each) for each in largest_at_force(numbers).values()]
+    if not shares:
+        return []
+    area, stiffness, conductance, _ = shares
+    large, small = (", mostly too large", ", mostly too small") if asperities else ("", "")
+    stiff = f"and conductance {stiffness}" if stiffness == conductance else f"{stiffness}, conductance {conductance}"
+    return [f"at given pressure: contact area within {area}{large}; stiffness {stiff}{small}"]
 
 
 def _has_summits(table: dict[str, Any]) -> bool:
@@ -240,7 +275,8 @@ def _coefficients(known: dict[str, Floats]) -> Coefficients | None:
 def _interaction(fraction: float, coefficients: Coefficients) -> str:
     """Return in words the typical error by interaction at a contact fraction, and its range."""
     root, most = math.sqrt(fraction), float(interaction_error(np.array(fraction), coefficients))
-    low, middle = (min(part * root, 1.0) for part in (coefficients.low, coefficients.typical))
+    low, middle = coefficients.low * root, 0.5 * coefficients.least + coefficients.typical * root
+    low, middle = min(low, 1.0), min(middle, 1.0)
     low_percent, middle_percent, most_percent = (_percent(part).removesuffix(" %") for part in (low, middle, most))
     return f"about {middle_percent} % ({low_percent} to {most_percent})"
 

@@ -10,6 +10,7 @@ DONE, FAILED, NOT_RUN = range(3)
 STATUSES = ("done", "failed", "not_run")
 ADHESION_CODES = ("none", "jkr", "dugdale")
 ESTIMATORS = ("sampled", "stratified", "expected")
+ORIGINS = ("asperities", "summits", "hills")
 
 
 def _tabor_known(scene: Any) -> bool:
@@ -113,6 +114,16 @@ RUN_DIAGNOSTICS = _diagnostics(
         in_result=_adhering,
     ),
     Diagnostic("largest_contact_fraction", "1", "largest contact area over the nominal area"),
+    Diagnostic(
+        "asperity_origin",
+        "1",
+        "which part of a surface the asperities stand for",
+        ORIGINS,
+        int,
+        merge="maximum",
+        missing=0,
+        unstated=0,
+    ),
     Diagnostic(
         "effective_contacts",
         "1",

@@ -3,11 +3,14 @@
 import math
 from collections.abc import Iterator
 
+import numpy as np
+
 from roughmdr.report.contacts import conduction_lines, contact_pressure_lines
 from roughmdr.report.export.law import Quantity, Source
 from roughmdr.report.export.table import RELATIVE_FROM, Table
 from roughmdr.report.export.units import UnitSystem
 from roughmdr.result.between import CONFIDENCE
+from roughmdr.result.model_errors import FORCES, SUFFIX, errors_along
 from roughmdr.result.trust import trust_of_result
 from roughmdr.result.view import ResultView
 from roughmdr.schema.wording import gathered
@@ -62,6 +65,13 @@ def table_lines(
         departure = f"{table.departure / pressure.size:.3g} {pressure.name}"
         yield "departure", f"up to {departure} at steps that a load jumps over"
     yield from model_lines(cell)
+    if variable not in FORCES and not quantity.over_pressure:
+        error = errors_along(cell).get(f"{variable}{'_mean' if cell.keeps_statistics else ''}{SUFFIX}")
+        if error is not None:
+            share = float(np.fmax.reduce(error.values, axis=None)) / float(
+                np.fmax.reduce(cell.mean(variable)[0], axis=None)
+            )
+            yield "error of the area", f"at given separation within about {100.0 * share:.2g} % at closest approach"
     yield from contact_pressure_lines(cell)
     if variable in CONDUCTANCES:
         yield from conduction_lines(cell)

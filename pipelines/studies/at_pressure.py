@@ -1,0 +1,251 @@
+"""The error that is stated of area, stiffness and gap at given pressure, put to the proof on surfaces drawn at random.
+
+Asperities on a plane, and periodic and cut Gaussian maps with their summits and hills, stand beside boundary elements.
+"""
+
+import math
+import warnings
+from concurrent.futures import ProcessPoolExecutor
+from multiprocessing import get_context
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+import xarray as xr
+
+import roughmdr as rm
+from roughmdr.elements.half_space import BoundaryElements
+from roughmdr.ensemble.maps.height_map import HeightMap
+from roughmdr.ensemble.maps.summits import find_summits
+from roughmdr.numerics.arguments import Floats
+from studies.comparison import HELD, PAIRS, draw_stated, held, in_cases, law_of, panels
+from studies.hills.maps import SIDE, MapCase, hills_of
+from studies.study import Study, table
+from studies.versus_bem.ensembles import SIZE, Case
+from studies.versus_bem.ensembles import separations as of_asperities
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+SEED = 2027
+"""Seed of the surfaces; those of seed 7 have set the constants."""
+FRACTIONS = np.array([0.003, 0.006, 0.012, 0.025, 0.05, 0.1, 0.15])
+SURFACES = {False: 45, True: 3}
+"""Number of surfaces in full and in reduced form."""
+_POINTS = {False: 384, True: 96}
+_MODELS: dict[str, Any] = {"independent": None, "mean field": "mean_field", "order 1": PAIRS[1], "order 2": PAIRS[2]}
+_CONTROLS = ("separation", "pressure", "contact_fraction")
+_QUANTITIES = ("pressure", "contact_fraction", "stiffness", "conductance_radius", "contact_radius_sum", "separation")
+_ASKED = [(quantity, control) for control in _CONTROLS for quantity in _QUANTITIES if quantity != control]
+_LEAST_POINTS = 3.0  # least points of the grid a mean contact radius
+_STEPS = 30  # steps of the law from one solution of boundary elements to the next
+_SHAPES = ("paraboloid", "paraboloid", "lognormal", "cone", "quartic")
+_PLACEMENTS = ("random", "random", "hard_core 0.5", "hard_core 0.7", "hexagonal", "square")
+_WORKERS = 2
+_WORDS = {
+    "error": (
+        "error of the quantity at given control over its value; of the separation over force over stiffness",
+        "1",
+    ),
+    "stated": ("stated error of the same", "1"),
+    "unknown": ("error of boundary elements", "1"),
+}
+
+
+class Surface(NamedTuple):
+    """A surface, and the asperities that stand for it by their group."""
+
+    ensembles: dict[str, xr.Dataset]
+    height: Floats
+    """[side], on the grid of boundary elements."""
+    side: float
+    """[m]"""
+    periodic: bool
+    separation: Floats
+    """Where its contact fractions are about ``FRACTIONS`` [m]."""
+
+
+def draw_case(seed: int, number: int, points: int) -> tuple[Case | MapCase, bool]:
+    """Return a surface at random, and whether it repeats: of three one is a map, of these every second one is cut."""
+    chance = np.random.default_rng([seed, number])
+    if number % 3 == 2:
+        case = MapCase(
+            float(chance.choice([0.3, 0.5, 0.8])), int(chance.choice([8, 12, 16, 24])), int(chance.integers(1000))
+        )
+        return case, bool(number % 2)
+    placement, shape = str(chance.choice(_PLACEMENTS)), str(chance.choice(_SHAPES))
+    count = 64 if placement == "hexagonal" else round(math.exp(chance.uniform(math.log(25), math.log(300))))
+    if placement == "square":
+        count = math.isqrt(count) ** 2
+    roughness = math.exp(chance.uniform(math.log(0.03), 0.0))
+    return Case(placement, shape, count, roughness, points, int(chance.integers(1000))), True
+
+
+def surface_of(case: Case | MapCase, periodic: bool) -> Surface:
+    """Return the surface of a case."""
+    if isinstance(case, Case):
+        ensemble, height, _ = case.build()
+        along = of_asperities(ensemble, FRACTIONS)
+        return Surface({"asperities": ensemble}, height / SIZE, SIZE, True, along[np.isfinite(along)])
+    height, side = case.height(16 if case.bandwidth <= 16 else 12), SIDE
+    if not periodic:
+        kept = int(0.7 * height.shape[0]) // 4 * 4
+        height, side = height[:kept, :kept], SIDE * kept / height.shape[0]
+    surface = HeightMap(height, side / height.shape[0], side / height.shape[1], periodic)
+    found = {"summits": find_summits(surface), "hills": hills_of(surface)}
+    height = height / side
+    along = side * _where_reached(height[::4, ::4], periodic)
+    return Surface({name: each.labelled().to_xarray() for name, each in found.items()}, height, side, periodic, along)
+
+
+def _where_reached(height: Floats, periodic: bool) -> Floats:
+    """Return the separations [side] at which boundary elements on a coarse grid reach the contact fractions."""
+    grid = BoundaryElements(height, np.ones(2), periodic=periodic)
+    top, mean = float(height.max()), float(height.mean())
+    tried = top - (top - mean) * np.linspace(0.03, 0.97, 24) ** 1.5
+    area = np.array([grid.patches().area if np.isfinite(grid.press(h)) else np.nan for h in tried.tolist()])
+    known = area > 0.0
+    along = np.interp(np.log(FRACTIONS), np.log(area[known]), tried[known], left=np.nan, right=np.nan)
+    return np.asarray(along[np.isfinite(along)])
+
+
+def truth_of(surface: Surface) -> tuple[dict[str, Floats], dict[str, Floats]]:
+    """Return quantities by boundary elements for E* = 1 Pa, and their errors, where the grid resolves contacts."""
+    grid = BoundaryElements(surface.height, np.ones(2), periodic=surface.periodic)
+    rows = []
+    for h in (surface.separation / surface.side).tolist():
+        force, patches = grid.press(h), grid.patches()
+        rows.append((force, patches.area, grid.stiffness(h), patches.radius_sum, patches.contacts))
+    force, area, stiffness, radius_sum, contacts = np.array(rows).T
+    found = {
+        "pressure": force, "contact_fraction": area, "stiffness": surface.side * stiffness,
+        "conductance_radius": 0.5 * surface.side * stiffness, "contact_radius_sum": surface.side * radius_sum,
+        "separation": surface.separation,
+    }  # fmt: skip
+    points = np.sqrt(area / (math.pi * np.maximum(contacts, 1.0))) * surface.height.shape[0]
+    resolved = (points >= _LEAST_POINTS) & (force > 0.0)
+    return {name: values[resolved] for name, values in found.items()}, unknown_errors(
+        contacts[resolved], points[resolved]
+    )
+
+
+def unknown_errors(contacts: Floats, points: Floats) -> dict[str, Floats]:
+    """Return about the error of boundary elements, by the points of a contact radius, and as cells touch."""
+    of_force, of_area = 2e-4 + 0.01 / points**2, 0.06 / points
+    of_stiffness = 3.0 * of_force + 0.02 / np.sqrt(np.maximum(contacts, 1.0))
+    return {
+        "pressure": of_force, "separation": of_force, "contact_fraction": of_area, "contact_radius_sum": of_area,
+        "stiffness": of_stiffness, "conductance_radius": of_stiffness,
+    }  # fmt: skip
+
+
+def path_of(separation: Floats) -> Floats:
+    """Return a path from above the first of the separations to below the last, through all of them."""
+    span = separation[0] - separation[-1]
+    corners = [separation[0] + span, *separation, separation[-1] - 0.3 * span]
+    number = np.arange(len(corners))
+    return np.asarray(np.interp(np.linspace(0, number[-1], 1 + _STEPS * number[-1]), number, corners))
+
+
+def law_to_the_end(ensemble: xr.Dataset, separation: Floats, interaction: Any) -> xr.Dataset | None:
+    """Return the law along as much of a path as it has one; None where that is little."""
+    while separation.size > 2 * _STEPS:
+        try:
+            return law_of(ensemble, separation=separation, effective_modulus=1.0, interaction=interaction,
+                          variables=[name for name in _QUANTITIES if name != "separation"])  # fmt: skip
+        except rm.RoughmdrError:
+            separation = separation[: int(0.93 * separation.size)]
+    return None
+
+
+def compare(task: tuple[int, int, int]) -> list[dict[str, Any]]:
+    """Return the errors of all models of a surface, by seed, number and points: of each the row of ``_WORDS``."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", rm.LimitWarning)
+        surface = surface_of(*draw_case(*task))
+    truth, unknown = truth_of(surface)
+    rows = []
+    for group, ensemble in surface.ensembles.items():
+        for model, interaction in _MODELS.items():
+            if (group == "hills" and model != "order 2") or (
+                not surface.periodic and not isinstance(interaction, dict)
+            ):
+                continue
+            asked = {**interaction, "boundary": "free"} if not surface.periodic else interaction
+            if law := law_to_the_end(ensemble, path_of(surface.separation), asked):
+                labels = {
+                    "group": f"{'cut ' if not surface.periodic else ''}{group}",
+                    "model": model,
+                    "surface": task[1],
+                }
+                rows.append(labels | _row(law, truth, unknown, surface.side))
+    return rows
+
+
+def _row(law: xr.Dataset, truth: dict[str, Floats], unknown: dict[str, Floats], side: float) -> dict[str, Floats]:
+    """Return errors, stated ones and those of boundary elements, [what is asked, step]."""
+    error, stated, floor = [], [], []
+    scales = truth | {"separation": truth["pressure"] * side**2 / truth["stiffness"]}
+    for control in _CONTROLS:
+        values = truth[control]
+        found = getattr(law.roughmdr, f"at_{control}")(values)
+        for quantity in (each for each, of in _ASKED if of == control):
+            error.append((found[quantity].to_numpy() - truth[quantity]) / scales[quantity])
+            stated.append(found[f"{quantity}_model_error"].to_numpy() / scales[quantity])
+            floor.append(unknown[quantity] + unknown[control])
+    return {"error": np.array(error), "stated": np.array(stated), "unknown": np.array(floor)}
+
+
+def measure(quick: bool) -> xr.Dataset:
+    """Compare all surfaces, or a few of them on coarse grids."""
+    tasks = [(SEED, number, _POINTS[quick]) for number in range(SURFACES[quick])]
+    with ProcessPoolExecutor(_WORKERS, mp_context=get_context("spawn")) as pool:
+        rows = [row for part in pool.map(compare, tasks) for row in part]
+    labels = {name: ("case", [row[name] for row in rows]) for name in ("group", "model", "surface")}
+    asked = [f"{quantity} at given {control}" for quantity, control in _ASKED]
+    return xr.Dataset(in_cases(_WORDS, rows, "case", "asked", "step"), {**labels, "asked": asked})
+
+
+def methods(result: xr.Dataset) -> dict[str, Any]:
+    """Return the cases of each method."""
+    names = [f"{group}, {model}" for group, model in zip(result["group"].values, result["model"].values, strict=True)]
+    return {name: np.array(names) == name for name in dict.fromkeys(names)}
+
+
+def draw(result: xr.Dataset) -> "Figure":
+    """Draw stated over true errors of quantities at given pressure."""
+    asked = [f"{quantity} at given pressure" for quantity in ("contact_fraction", "stiffness", "separation")]
+    figure, row = panels(15, 5.2, len(asked))
+    for panel, name in zip(row, asked, strict=True):
+        one = result.sel(asked=name)
+        error = np.maximum(np.abs(one["error"].to_numpy()), one["unknown"].to_numpy())
+        own = {label: np.broadcast_to(cases[:, None], error.shape) for label, cases in methods(result).items()}
+        draw_stated(panel, error, one["stated"].to_numpy(), own)
+        panel.set(title=name.replace("_", " "))
+    return figure
+
+
+def report(result: xr.Dataset) -> str:
+    """Return by method and by what is asked how large errors are, and how the stated ones do."""
+    rows = []
+    for label, cases in methods(result).items():
+        for name in result["asked"].values:
+            one = result.isel(case=np.flatnonzero(cases)).sel(asked=name)
+            error, stated, unknown = (one[each].to_numpy() for each in ("error", "stated", "unknown"))
+            known = np.isfinite(error) & np.isfinite(stated)
+            if known.any():
+                off = np.abs(error[known])
+                sizes = [f"{100.0 * each:.2g} %" for each in np.quantile(off, [0.5, 0.9])]
+                sign = f"{100.0 * np.mean(error[known] > 0.0):.0f} %"
+                rows.append([label, str(name), *sizes, sign, *held(off, stated[known], unknown[known]).cells])
+    surfaces = np.unique(result["surface"].values).size
+    head = ["method", "asked", "median", "90 % below", "too high", *HELD]
+    return f"""Errors on {surfaces} surfaces, f from 0.3 to 15 %; errors below those of boundary elements count as held:
+
+{table(head, rows)}
+"""
+
+
+STUDY = Study(
+    "at_pressure", "Area, stiffness and gap at given pressure: stated errors and true ones", measure, draw, report,
+    f"{SURFACES[True]} of {SURFACES[False]} surfaces, on coarser grids",
+)  # fmt: skip

@@ -1,0 +1,119 @@
+"""The errors of contact area, stiffness and contact radii at given force, from that of the force at given separation.
+
+A law whose force is off by a shift of the separation alone has no other error at given force: what is left there is how
+the contacts share the load. Errors at any other given quantity follow from these and from the slopes of the law.
+"""
+
+from collections.abc import Callable, Iterator
+from functools import partial
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from roughmdr.ensemble.ensemble import Origin
+from roughmdr.model_error.coupling import summits_error
+from roughmdr.model_error.interaction import ASPERITIES, HILLS, SUMMITS, interaction_error
+from roughmdr.numerics.arguments import Floats
+from roughmdr.variables import CONDUCTANCES, ORIGINS
+
+AREA, STIFFNESS, CONDUCTANCE, RADIUS_SUM = range(4)
+"""Quantities with an error of their own at given force, in the order of ``Method.errors``."""
+QUANTITIES = {
+    "contact_area": AREA,
+    "contact_fraction": AREA,
+    "stiffness": STIFFNESS,
+    "conductance_radius": CONDUCTANCE,
+    **dict.fromkeys(CONDUCTANCES, CONDUCTANCE),
+    "contact_radius_sum": RADIUS_SUM,
+}
+"""Quantity that each variable of a law is proportional to."""
+
+
+NAMES = ("contact_area", "stiffness", "conductance_radius", "contact_radius_sum")
+"""Variables that stand for the quantities."""
+
+
+class AtForce(NamedTuple):
+    """The relative error of a quantity at given force: share I + constant + root sqrt(f).
+
+    I is the relative error of the force at given separation by interaction, f the contact fraction.
+    """
+
+    share: float
+    constant: float = 0.0
+    root: float = 0.0
+
+
+class Method(NamedTuple):
+    """Errors of one way to compute a law, against boundary elements (``pipelines/study.py at_pressure``)."""
+
+    interaction: Callable[[Floats], Floats]
+    """Return a multiple of I at contact fractions, for results that hold the largest along a path alone."""
+    errors: tuple[AtForce, AtForce, AtForce, AtForce]
+    """Errors of area, stiffness, conductance and sum of radii at given force."""
+
+
+METHODS: dict[tuple[Origin, bool], Method] = {
+    ("asperities", False): Method(
+        partial(interaction_error, coefficients=ASPERITIES),
+        (AtForce(0.36), AtForce(0.95), AtForce(0.95), AtForce(0.58)),
+    ),
+    ("asperities", True): Method(
+        lambda fraction: np.asarray(fraction**1.5),
+        (AtForce(0.5, root=0.05), AtForce(3.5, root=0.03), AtForce(1.0, root=0.03), AtForce(0.5, root=0.05)),
+    ),
+    ("summits", False): Method(
+        partial(interaction_error, coefficients=SUMMITS),
+        (AtForce(0.0, 0.18, 0.25), AtForce(0.9), AtForce(0.9), AtForce(0.0, 0.15, 1.8)),
+    ),
+    ("summits", True): Method(
+        partial(summits_error, origin="summits"),
+        (AtForce(0.0, 0.18, 0.25), AtForce(0.75), AtForce(0.75), AtForce(0.0, 0.15, 1.8)),
+    ),
+    ("hills", False): Method(partial(interaction_error, coefficients=HILLS), (AtForce(1.0),) * 4),
+    ("hills", True): Method(
+        lambda fraction: np.where(fraction > 0.0, 1.0, 0.0),
+        (AtForce(0.0, 0.08, 0.4), AtForce(1.0), AtForce(1.0, root=0.1), AtForce(0.0, root=3.0)),
+    ),
+}
+"""Methods by the origin of the asperities, and whether they are coupled in pairs."""
+
+
+def relative_at_force(
+    interaction: Floats, fraction: Floats, others: Floats, origin: Floats, coupled: NDArray[np.bool_]
+) -> list[Floats]:
+    """Return the relative errors [1] of the quantities at given force, at most 1: [..., step] each.
+
+    ``interaction`` is the error by interaction of the force at given separation, ``fraction`` the contact fraction;
+    ``others`` are all other parts of the error, ``origin`` the code of ``ORIGINS``, of a run the same at all steps.
+    """
+    shape = np.broadcast_shapes(interaction.shape, fraction.shape, origin.shape)
+    found = [np.zeros(shape) for _ in range(4)]
+    for method, own in _methods(origin, coupled):
+        for error, (share, constant, root) in zip(found, method.errors, strict=True):
+            np.copyto(error, share * interaction + constant + root * np.sqrt(fraction) + others, where=own)
+    touching = np.where(fraction > 0.0, 1.0, 0.0 * fraction)
+    return [np.minimum(error, 1.0) * touching for error in found]
+
+
+def along_path(largest: Floats, fraction: Floats, origin: Floats, coupled: NDArray[np.bool_]) -> Floats:
+    """Return the error by interaction at each step [1] from the ``largest`` of the path, as ``relative_at_force``.
+
+    It is for results that store the largest alone.
+    """
+    found = np.zeros(np.broadcast_shapes(largest.shape, fraction.shape, origin.shape))
+    most = np.fmax.reduce(fraction, axis=-1, keepdims=True)
+    for method, own in _methods(origin, coupled):
+        here, there = method.interaction(fraction), method.interaction(most)
+        share = np.divide(here, there, out=np.zeros(np.broadcast_shapes(here.shape, there.shape)), where=there > 0.0)
+        np.copyto(found, largest * share, where=own)
+    return found
+
+
+def _methods(origin: Floats, coupled: NDArray[np.bool_]) -> Iterator[tuple[Method, NDArray[np.bool_]]]:
+    """Yield the methods of the runs, and which runs are computed by each."""
+    for (kind, pairs), method in METHODS.items():
+        own = (origin == ORIGINS.index(kind)) & (coupled == pairs)
+        if own.any():
+            yield method, own
