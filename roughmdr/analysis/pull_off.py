@@ -6,8 +6,10 @@ import numpy as np
 
 from roughmdr.batch.moments import mean_and_error
 from roughmdr.errors import StoreError
+from roughmdr.model_error.at_force import pull_off_error
 from roughmdr.numerics.arguments import Floats
 from roughmdr.result.curves import result_of
+from roughmdr.variables import ADHESION_CODES
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -44,6 +46,8 @@ def pull_off(dataset: "xr.Dataset") -> "xr.Dataset":
                 about = {"units": "N", "long_name": "standard error of the mean pull-off force"}
                 found["force_sem"] = error.assign_attrs(about)
     found |= {name: dataset[stored] for name, stored in _AS_THEY_ARE.items() if stored in dataset}
+    if "contact_fraction" in found and "asperity_origin" in dataset:
+        found["force_model_error"] = _model_error(dataset, found["force"], found["contact_fraction"])
     return xr.Dataset(found, attrs={"comment": _COMMENT})
 
 
@@ -68,6 +72,30 @@ def _mean_and_error(dataset: "xr.Dataset", name: str) -> "tuple[xr.DataArray, xr
     )
     attrs = each.attrs | {"long_name": f"mean of the {each.attrs['long_name']}"}
     return mean.assign_attrs(attrs), error
+
+
+def _model_error(dataset: "xr.Dataset", force: "xr.DataArray", fraction: "xr.DataArray") -> "xr.DataArray":
+    """Return the error of the pull-off force by the assumptions of the model [N]."""
+    import xarray as xr
+
+    unknown = np.nan * dataset["interaction_error"]
+    over_runs = [dim for dim in unknown.dims if dim == "realization"]
+    origin, grid = (dataset.get(name, unknown).max(over_runs) for name in ("asperity_origin", "grid_points"))
+    tabor = dataset.get("tabor_number", unknown)
+    if "adhesion_law" in dataset:
+        tabor = tabor.where(dataset["adhesion_law"] == ADHESION_CODES.index("jkr"))
+    relative = xr.apply_ufunc(
+        pull_off_error,
+        fraction,
+        tabor.min(over_runs),
+        origin,
+        np.isfinite(grid),
+        dask="parallelized",
+        output_dtypes=[np.float64],
+    )
+    about = "estimated error of the pull-off force by the assumptions of the model"
+    found: xr.DataArray = (relative * abs(force)).assign_attrs(units="N", long_name=about)
+    return found
 
 
 def _over_realizations(values: Floats) -> tuple[Floats, Floats]:

@@ -100,6 +100,7 @@ def at_value(dataset: "xr.Dataset", name: str, values: ArrayLike, branch: str) -
             dask="parallelized",
             output_dtypes=[np.float64],
         )
+        found[label].attrs["ancillary_variables"] += f" {label}{SUFFIX}"
         found[f"{label}{SUFFIX}"] = error.assign_attrs(attributes(label.removesuffix("_mean"), name))
     coordinate = (name, points.values, {"units": units, "long_name": LAW_VARIABLES[name].long_name})
     points_found = xr.Dataset(found, attrs=_attributes(dataset, name, branch)).assign_coords({name: coordinate})

@@ -28,7 +28,9 @@ _H = SEPARATION.name
 _KNOWN = {*QUANTITIES, *FORCES, _H}
 _STATED = "model_error_curve"
 _NUMBERS = (*PARTS, "largest_contact_fraction", "asperity_origin")
-_GRID = "grid_points"
+_GRID, _BY_JKR = "grid_points", "adhesion_range_error"
+_MOST = 0.9
+"""Largest relative error that a value is corrected for: of a value that is too small by more nothing is left."""
 _OWN = "own"
 """Dimension of length 1 in place of the steps, of numbers of a run."""
 
@@ -43,30 +45,38 @@ def errors_at_force(*arrays: Floats, names: Sequence[str], legs: Sequence[Leg], 
     curves = dict(zip(names, arrays[2:], strict=False))
     numbers = dict(zip((*_NUMBERS, _GRID), arrays[2 + len(names) :], strict=True))
     force_name = _first(FORCES, curves)
-    touching, origin, coupled = curves[force_name] != 0.0, numbers["asperity_origin"], np.isfinite(numbers[_GRID])
-    interaction, by_jkr = numbers["interaction_error"], numbers["adhesion_range_error"]
-    others = np.add.reduce(
-        [numbers[name] for name in PARTS if name not in ("interaction_error", "adhesion_range_error")]
-    )
-    largest = np.where(touching, numbers["largest_contact_fraction"], 0.0)
-    fraction = np.where(np.isnan(fraction), largest, fraction)
+    of_force, over_largest, at_force = _relative_errors(curves[force_name], fraction, stated, numbers, adheres)
+
+    def error(name: str) -> Floats:
+        size = np.abs(curves[name])
+        if name in QUANTITIES:
+            return size * _over_value(at_force[QUANTITIES[name]])
+        if name == _H:
+            return _over(error(force_name), _changes(curves[force_name], legs)) * np.abs(_changes(curves[_H], legs))
+        largest: Floats = np.fmax.reduce(size, axis=-1, keepdims=True)
+        return size * _over_value(of_force) + largest * over_largest
+
+    return tuple(error(name) for name in names)
+
+
+def _relative_errors(
+    force: Floats, fraction: Floats, stated: Floats, numbers: Mapping[str, Floats], adheres: bool
+) -> tuple[Floats, Floats, list[Floats]]:
+    """Return the error of the force at given separation over itself, the part over the largest force, and errors [1] of
+    quantities at given force.
+    """
+    touching, origin, coupled = force != 0.0, numbers["asperity_origin"], np.isfinite(numbers[_GRID])
+    interaction, by_jkr = numbers["interaction_error"], numbers[_BY_JKR]
+    others = np.add.reduce([numbers[name] for name in PARTS if name not in ("interaction_error", _BY_JKR)])
+    fraction = np.where(np.isnan(fraction), np.where(touching, numbers["largest_contact_fraction"], 0.0), fraction)
     foreseen = along_path(interaction, fraction, origin, coupled) + np.where(touching, others + by_jkr, 0.0)
     whole = np.where(np.isnan(stated), np.minimum(foreseen, 1.0), stated)
     sticky_hills = adheres & (origin == ORIGINS.index("hills"))
     over_largest = np.where(sticky_hills, whole, np.minimum(whole, by_jkr))
     own = np.maximum(whole - over_largest - np.where(touching, others, 0.0), 0.0)
-    relative = relative_at_force(own, fraction, others + by_jkr, origin, coupled)
-
-    def error(name: str) -> Floats:
-        size = np.abs(curves[name])
-        if name in QUANTITIES:
-            at_force = relative[QUANTITIES[name]]
-            return np.asarray(size * np.where(sticky_hills, np.fmax(at_force, whole), at_force))
-        if name == _H:
-            return _over(error(force_name), _changes(curves[force_name], legs)) * np.abs(_changes(curves[_H], legs))
-        return np.asarray((whole - over_largest) * size + over_largest * np.fmax.reduce(size, axis=-1, keepdims=True))
-
-    return tuple(error(name) for name in names)
+    at_force = relative_at_force(own, fraction, others + by_jkr, origin, coupled)
+    at_force = [np.where(sticky_hills, np.fmax(each, whole), each) for each in at_force]
+    return whole - over_largest, over_largest, at_force
 
 
 def kept_by(given: str, names: Collection[str]) -> str:
@@ -182,6 +192,11 @@ def _spread(array: Array, dims: Sequence[str]) -> Floats:
     """Return the values of an array over dimensions, of length 1 where it does not have them."""
     sizes = dict(zip(array.dims, array.values.shape, strict=True))
     return np.asarray(array.values, dtype=np.float64).reshape([sizes.get(dim, 1) for dim in dims])
+
+
+def _over_value(error: Floats) -> Floats:
+    """Return a relative error, which is over the true value, over a value that is too small by it."""
+    return np.asarray(error / (1.0 - np.minimum(error, _MOST)))
 
 
 def _changes(curve: Floats, legs: Sequence[Leg]) -> Floats:

@@ -17,8 +17,10 @@ def test_the_pull_off_is_the_mean_over_realisations(curves: xr.Dataset) -> None:
     error = curves.pull_off_force.std("realization", ddof=1) / np.sqrt(off["count"])
     np.testing.assert_allclose(off.force_sem, error, rtol=1e-12)
     assert set(off.data_vars) == {
-        *("force", "force_sem", "separation", "contacts", "pressure", "contact_fraction", "count", "force_of_mean")
+        *("force", "force_sem", "separation", "contacts", "pressure", "contact_fraction", "count", "force_of_mean"),
+        "force_model_error",
     }
+    np.testing.assert_allclose(off.force_model_error, -off.force * 1.1 * np.sqrt(off.contact_fraction), rtol=1e-12)
     units = [off[name].attrs["units"] for name in ("force", "force_sem", "separation", "contacts", "pressure")]
     assert units == ["N", "N", "m", "1", "Pa"]
 

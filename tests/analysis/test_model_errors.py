@@ -1,0 +1,159 @@
+"""The model errors of values that are read off a result: where they vanish, add up and agree."""
+
+from typing import Any
+
+import numpy as np
+import pytest
+import xarray as xr
+from scenes import CONDUCTION, ensemble, scene
+
+import roughmdr as rm
+from roughmdr.model_error.at_force import METHODS, QUANTITIES
+from roughmdr.result.model_errors import SUFFIX, errors_along
+from roughmdr.result.view import ResultView
+
+_VARIABLES = ["force", "pressure", "contact_area", "stiffness", "conductance_radius", "contact_radius_sum"]
+_PATH = {"separation": {"start": "4 sigma", "stop": "0.5 sigma", "steps": 60}}
+
+
+def run(**changes: Any) -> xr.Dataset:
+    variables = [*_VARIABLES, *changes.pop("more", [])]
+    sections = {"adhesion": None, "path": _PATH, "batch": {"realizations": 2}} | changes
+    return rm.run(scene(**sections, output={"variables": variables}))
+
+
+def over_truth(found: xr.Dataset, name: str) -> xr.DataArray:
+    """The error of a value over the true one, where the value is too small by it."""
+    error = found[f"{name}{SUFFIX}"]
+    return error / (error + found[name])
+
+
+@pytest.fixture(scope="module")
+def result() -> xr.Dataset:
+    return run(more=["model_error_curve"])
+
+
+def test_at_a_given_force_the_force_has_no_error_and_the_area_that_of_its_share(result: xr.Dataset) -> None:
+    there = result.roughmdr.at_pressure([50.0, 500.0])
+    assert bool((there[f"force{SUFFIX}"] == 0.0).all())
+    own = result.roughmdr.at_separation(there.separation.values[0], branch="loading").isel(realization=0)
+    interaction = over_truth(own, "force") - float(result.slope_error[0])
+    share = METHODS["asperities", False].errors[QUANTITIES["contact_area"]].share
+    expected = share * interaction + float(result.slope_error[0])
+    found = there.isel(realization=0)
+    np.testing.assert_allclose(over_truth(found, "contact_area"), expected, rtol=2e-2)
+    for name in ("contact_area", "separation", "stiffness"):
+        assert f"{name}{SUFFIX}" in there[name].attrs["ancillary_variables"]
+        assert there[f"{name}{SUFFIX}"].attrs["units"] == there[name].attrs["units"]
+
+
+def test_at_a_given_separation_the_error_of_the_force_is_that_of_the_curve(result: xr.Dataset) -> None:
+    steps = result.isel(step=[20, 40, 55], realization=0)
+    there = result.roughmdr.at_separation(steps.separation.values).isel(realization=0)
+    for name in ("force", "pressure"):
+        np.testing.assert_allclose(over_truth(there, name), steps.model_error_curve, rtol=1e-9)
+
+
+def test_the_separation_is_off_by_the_error_of_the_force_over_the_slope(result: xr.Dataset) -> None:
+    one = result.isel(realization=0)
+    errors = errors_along(ResultView(result))
+    slope = np.gradient(one.force.values, one.separation.values)
+    at = one.roughmdr.at_force(one.force.values[[30, 45]])
+    expected = errors[f"force{SUFFIX}"].values[0, [30, 45]] / np.abs(slope[[30, 45]])
+    np.testing.assert_allclose(at[f"separation{SUFFIX}"], expected, rtol=1e-6)
+
+
+@pytest.mark.parametrize("interaction", [None, {"model": "mean_field"}], ids=["independent", "mean field"])
+def test_without_the_curve_of_the_error_the_errors_are_those_with_it(interaction: dict[str, str] | None) -> None:
+    """A result stores the largest error alone; along the path it follows from the contact fraction."""
+    with_it, without = (run(interaction=interaction, more=more) for more in (["model_error_curve"], []))
+    for found, expected in zip(
+        (without.roughmdr.at_pressure([50.0, 500.0]), without.roughmdr.at_contact_fraction([1e-3])),
+        (with_it.roughmdr.at_pressure([50.0, 500.0]), with_it.roughmdr.at_contact_fraction([1e-3])),
+        strict=True,
+    ):
+        for name in (name for name in found.data_vars if name.endswith(SUFFIX)):
+            np.testing.assert_allclose(found[name], expected[name], rtol=1e-9, err_msg=str(name))
+
+
+def test_a_lone_asperity_is_off_by_its_slope_alone() -> None:
+    lone = ensemble([1e-6], area=1.0, radius=50e-6)
+    law = rm.load_separation(
+        lone, separation=np.linspace(1.1e-6, 0.5e-6, 13), effective_modulus=1e9, variables=_VARIABLES
+    )
+    there = law.roughmdr.at_force(0.5 * float(law.force.max()))
+    for name in ("contact_area", "stiffness", "contact_radius_sum"):
+        assert float(over_truth(there, name)) == pytest.approx(float(law.slope_error), rel=1e-9)
+
+
+def test_units_do_not_matter() -> None:
+    def shares(length: float, modulus: float) -> dict[str, float]:
+        made = rm.generate(
+            {"source": "random", "shape": "paraboloid", "count": 300, "patch": 1e-3 * length, "radius": 5e-5 * length,
+             "height": {"distribution": "normal", "std": 1e-6 * length}}, seed=3,
+        )  # fmt: skip
+        h = np.linspace(4e-6, 0.5e-6, 50) * length
+        law = rm.load_separation(made, separation=h, effective_modulus=modulus, variables=_VARIABLES)
+        there = law.roughmdr.at_pressure(1e-4 * modulus)
+        return {str(name): float(there[name] / abs(there[str(name).removesuffix(SUFFIX)])) for name in there
+                if str(name).endswith(SUFFIX) and "force" not in str(name)}  # fmt: skip
+
+    first, other = shares(1.0, 1e6), shares(1e-6, 1e11)
+    assert first.keys() == other.keys()
+    assert list(first.values()) == pytest.approx(list(other.values()), rel=1e-6)
+
+
+def test_under_a_given_force_a_result_stores_the_errors_of_what_follows(dead_load: xr.Dataset) -> None:
+    """They are those of the same values found on a path of separations."""
+    loads = ["1 uN", "0.1 mN", "1 mN", "2 mN"]
+    under = run(path={"force": loads}, batch={"realizations": 1})
+    assert {"separation_model_error", "contact_area_model_error", "stiffness_model_error"} <= set(under.data_vars)
+    along = run(batch={"realizations": 1})
+    found, expected = under.isel(step=slice(1, None)), along.roughmdr.at_force(loads[1:])
+    for name in ("contact_area", "stiffness"):
+        share = over_truth(found, name).values - float(under.slope_error[0])
+        of_path = over_truth(expected, name).values - float(along.slope_error[0])
+        np.testing.assert_allclose(share, of_path, rtol=0.02)
+    off = dead_load.separation.isnull()
+    assert bool(dead_load.contact_area_model_error.where(~off).notnull().equals(~off & (dead_load.contact_area > -1)))
+
+
+def test_conductances_have_the_error_of_their_radius() -> None:
+    table = scene(
+        adhesion=None, path=_PATH, batch=None, conduction=CONDUCTION,
+        output={"variables": ["force", "conductance_radius", "thermal_conductance", "electrical_conductance"]},
+    )  # fmt: skip
+    there = rm.run(table).isel(realization=0).roughmdr.at_force("1 mN")
+    shares = {float(there[f"{name}{SUFFIX}"] / there[name]) for name in table["output"]["variables"][1:]}
+    assert max(shares) == pytest.approx(min(shares), rel=1e-9)
+
+
+def test_under_a_body_nothing_is_stated() -> None:
+    """The error of its law is that of the layer where it is pressed most."""
+    table = scene(
+        adhesion=None, nominal={"radius": "10 mm", "error": 1e-2}, batch={"estimator": "expected"},
+        path={"separation": ["3 um", "1 um", "0 um"]},
+    )  # fmt: skip
+    there = rm.run(table).roughmdr.at_force("1 uN")
+    assert not [name for name in there if str(name).endswith(SUFFIX)]
+
+
+def test_a_result_in_chunks_stays_lazy_and_has_the_same_errors(result: xr.Dataset) -> None:
+    lazy = result.chunk(realization=1).roughmdr.at_pressure([50.0, 500.0])
+    assert lazy[f"contact_area{SUFFIX}"].chunks is not None
+    xr.testing.assert_allclose(lazy.compute(), result.roughmdr.at_pressure([50.0, 500.0]))
+
+
+def test_of_a_reference_that_is_given_the_errors_are_those_at_its_separation() -> None:
+    table = scene(
+        adhesion=None, batch=None, path={"separation": {"start": "2 sigma", "stop": "1 sigma", "steps": 6}},
+        asperities={"source": "random", "shape": "paraboloid", "count": 16, "patch": "0.2 mm", "radius": "50 um",
+                    "height": {"distribution": "normal", "std": "1 um"}, "placement": "square"},
+        reference={"model": "boundary_elements", "error": 0.3},
+    )  # fmt: skip
+    made = rm.run(table).isel(realization=0)
+    given = 0.5 * float(made.reference_force.max())
+    there = made.roughmdr.at_force(given, reference=True)
+    own = made.roughmdr.at_separation(float(there.separation))
+    assert float(there[f"force{SUFFIX}"]) == pytest.approx(float(own[f"force{SUFFIX}"]), rel=0.05)
+    assert float(there[f"contact_area{SUFFIX}"]) == pytest.approx(float(own[f"contact_area{SUFFIX}"]), rel=0.2)
