@@ -1,6 +1,7 @@
 """The error that is stated of area, stiffness and gap at given pressure, put to the proof on surfaces drawn at random.
 
-Asperities on a plane, and periodic and cut Gaussian maps with their summits and hills, stand beside boundary elements.
+Asperities on a plane, and periodic and cut Gaussian maps with their summits and hills, stand beside boundary elements;
+independent asperities with JKR beside the same in pairs.
 """
 
 import math
@@ -31,6 +32,8 @@ SEED = 2027
 FRACTIONS = np.array([0.003, 0.006, 0.012, 0.025, 0.05, 0.1, 0.15])
 SURFACES = {False: 45, True: 3}
 """Number of surfaces in full and in reduced form."""
+ADHERING = {False: 20, True: 2}
+"""Number of those with JKR."""
 _POINTS = {False: 384, True: 96}
 _MODELS: dict[str, Any] = {"independent": None, "mean field": "mean_field", "order 1": PAIRS[1], "order 2": PAIRS[2]}
 _CONTROLS = ("separation", "pressure", "contact_fraction")
@@ -181,13 +184,47 @@ def compare(task: tuple[int, int, int]) -> list[dict[str, Any]]:
     return rows
 
 
-def _row(law: xr.Dataset, truth: dict[str, Floats], unknown: dict[str, Floats], side: float) -> dict[str, Floats]:
+def compare_adhering(task: tuple[int, int]) -> list[dict[str, Any]]:
+    """Return the errors of independent asperities with JKR against those in pairs, on loading and on unloading."""
+    chance = np.random.default_rng([*task, 1])
+    count = round(math.exp(chance.uniform(math.log(40), math.log(200))))
+    case = Case(str(chance.choice(("random", "hard_core 0.6"))), "paraboloid", count,
+                math.exp(chance.uniform(math.log(0.03), 0.0)), _POINTS[True], task[1])  # fmt: skip
+    ensemble = case.generate()
+    height = ensemble["height"].to_numpy()
+    std = float(height.std())
+    work = (math.exp(chance.uniform(math.log(0.02), math.log(0.4))) * std) ** 1.5  # lengths of its stretch over std
+    along = of_asperities(ensemble, np.array([0.15]))[0]
+    path = np.linspace(height.max() + 2.0 * std, along, 2 * _STEPS)
+    asked: dict[str, Any] = {"separation": path, "work": work, "unload": True, "effective_modulus": 1.0,
+                             "variables": [name for name in _QUANTITIES if name != "separation"]}  # fmt: skip
+    try:
+        alone, pairs = law_of(ensemble, **asked), law_of(ensemble, interaction=PAIRS[2], **asked)
+    except rm.RoughmdrError:
+        return []
+    rows = []
+    for branch in ("loading", "unloading"):
+        pressed = float(pairs["pressure"].max()) * np.array([0.1, 0.3, 0.6, 0.95])
+        found = pairs.roughmdr.at_pressure(pressed, branch=branch)
+        truth = {name: found[name].to_numpy() for name in _QUANTITIES if name != "pressure"} | {"pressure": pressed}
+        unknown = {
+            name: found[f"{name}_model_error"].to_numpy() / np.abs(truth[name]) for name in truth if name != "pressure"
+        }
+        unknown |= {"pressure": np.zeros(pressed.size), "separation": np.zeros(pressed.size)}
+        labels = {"group": "JKR asperities", "model": f"independent, {branch}", "surface": -1 - task[1]}
+        rows.append(labels | _row(alone, truth, unknown, SIZE, branch))
+    return rows
+
+
+def _row(
+    law: xr.Dataset, truth: dict[str, Floats], unknown: dict[str, Floats], side: float, branch: str = "loading"
+) -> dict[str, Floats]:
     """Return errors, stated ones and those of boundary elements, [what is asked, step]."""
     error, stated, floor = [], [], []
     scales = truth | {"separation": truth["pressure"] * side**2 / truth["stiffness"]}
     for control in _CONTROLS:
         values = truth[control]
-        found = getattr(law.roughmdr, f"at_{control}")(values)
+        found = getattr(law.roughmdr, f"at_{control}")(values, branch=branch)
         for quantity in (each for each, of in _ASKED if of == control):
             error.append((found[quantity].to_numpy() - truth[quantity]) / scales[quantity])
             stated.append(found[f"{quantity}_model_error"].to_numpy() / scales[quantity])
@@ -200,6 +237,8 @@ def measure(quick: bool) -> xr.Dataset:
     tasks = [(SEED, number, _POINTS[quick]) for number in range(SURFACES[quick])]
     with ProcessPoolExecutor(_WORKERS, mp_context=get_context("spawn")) as pool:
         rows = [row for part in pool.map(compare, tasks) for row in part]
+        adhering = [(SEED, number) for number in range(ADHERING[quick])]
+        rows += [row for part in pool.map(compare_adhering, adhering) for row in part]
     labels = {name: ("case", [row[name] for row in rows]) for name in ("group", "model", "surface")}
     asked = [f"{quantity} at given {control}" for quantity, control in _ASKED]
     return xr.Dataset(in_cases(_WORDS, rows, "case", "asked", "step"), {**labels, "asked": asked})

@@ -57,10 +57,8 @@ class Analysis:
         Returns
         -------
         xarray.Dataset
-            ``force`` [N], its standard error ``force_sem`` [N] and error by the assumptions of the model
-            ``force_model_error`` [N], ``separation`` [m], ``contacts`` [1], ``pressure``
-            [Pa], ``contact_fraction`` [1], ``count`` [1] of the realisations that have a pull-off, and
-            ``force_of_mean`` [N], as far as the result has them.
+            ``force``, ``force_sem`` (standard error), ``force_model_error`` [N], ``separation`` [m], ``contacts`` [1],
+            ``pressure`` [Pa], ``contact_fraction`` [1], ``count`` [1] of pull-offs and ``force_of_mean`` [N] if it has it.
 
         Raises
         ------
@@ -121,8 +119,7 @@ class Analysis:
             nominal_area where the result does not hold them); NaN where it is never reached. Beside each ``NAME`` its
             ``NAME_interpolation_error``, which holds in 97 % of cases: from the bends and jumps of the steps around; of
             curves that only jump, such as contact_count, or of fewer than four steps, the difference to the farther.
-            Beside force, pressure, area, contact fraction, stiffness, conductances, sum of contact radii and separation
-            also ``NAME_model_error``: the error by the assumptions of the model where the value is given.
+            Beside what is no count or energy also ``NAME_model_error``, by the assumptions of the model at given value.
 
         Raises
         ------

@@ -13,7 +13,7 @@ from roughmdr.loading.path import LoadingPath
 from roughmdr.numerics.arguments import Floats
 from roughmdr.result.cells import of_cells
 from roughmdr.result.curves import result_of, stored_curves
-from roughmdr.result.model_errors import FORCES, SUFFIX, errors_along
+from roughmdr.result.model_errors import FORCES, errors_along
 from roughmdr.result.view import ResultView
 from roughmdr.scene import Scene
 from roughmdr.schema.toml_text import parse_toml
@@ -21,6 +21,7 @@ from roughmdr.storage.labelled import Labelled
 from roughmdr.variables import (
     DONE,
     INFINITE_VARIANCE,
+    MODEL_ERROR,
     PULL_OFF,
     REMOTE,
     RUN_DIAGNOSTICS,
@@ -35,7 +36,7 @@ if TYPE_CHECKING:
 
 _OVER_CELLS = ("pull_off_count", "pull_off_force_of_mean", "pull_off_pressure_of_mean", "nominal_area")
 _ERROR = "_interpolation_error"
-_ERRORS = (_ERROR, SUFFIX)
+_ERRORS = (_ERROR, MODEL_ERROR)
 """Endings of the names of errors, whose statistic is the largest."""
 _OF_CURVES = ("cell_key", "remark")
 """Coordinates that describe the runs whose curves were kept."""

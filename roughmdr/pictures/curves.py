@@ -8,10 +8,10 @@ import numpy as np
 
 from roughmdr.errors import StoreError
 from roughmdr.numerics.arguments import Floats
-from roughmdr.result.model_errors import SUFFIX, errors_along
+from roughmdr.result.model_errors import errors_along
 from roughmdr.result.view import Leg, ResultView
 from roughmdr.schema.wording import suggestion
-from roughmdr.variables import CURVE_VARIABLES, LAW_VARIABLES, OVER_AREA, TIME
+from roughmdr.variables import CURVE_VARIABLES, LAW_VARIABLES, MODEL_ERROR, OVER_AREA, TIME
 
 _PER_AREA = {
     **{total: (OVER_AREA[total], CURVE_VARIABLES[OVER_AREA[total]].units) for total in ("force", "contact_area")},
@@ -173,7 +173,7 @@ def _model_error(result: ResultView, name: str, mean: Floats) -> Floats:
     if not result.holds("model_error_curve"):
         return np.full_like(mean, np.nan)
     suffix = "_mean" if result.keeps_statistics else ""
-    error = errors_along(result).get(f"{name}{suffix}{SUFFIX}")
+    error = errors_along(result).get(f"{name}{suffix}{MODEL_ERROR}")
     if error is None:
         return np.full_like(mean, np.nan)
     if "realization" not in error.dims:

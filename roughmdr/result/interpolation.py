@@ -19,10 +19,10 @@ from roughmdr.result.curves import (
     stored_curves,
     whole,
 )
-from roughmdr.result.model_errors import SUFFIX, at_given, attributes, errors_over_steps, kept_by
+from roughmdr.result.model_errors import at_given, attributes, errors_over_steps, kept_by
 from roughmdr.result.view import ResultView
 from roughmdr.schema.arguments import check_values
-from roughmdr.variables import LAW_VARIABLES, SEPARATION
+from roughmdr.variables import LAW_VARIABLES, MODEL_ERROR, SEPARATION
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -100,8 +100,8 @@ def at_value(dataset: "xr.Dataset", name: str, values: ArrayLike, branch: str) -
             dask="parallelized",
             output_dtypes=[np.float64],
         )
-        found[label].attrs["ancillary_variables"] += f" {label}{SUFFIX}"
-        found[f"{label}{SUFFIX}"] = error.assign_attrs(attributes(label.removesuffix("_mean"), name))
+        found[label].attrs["ancillary_variables"] += f" {label}{MODEL_ERROR}"
+        found[f"{label}{MODEL_ERROR}"] = error.assign_attrs(attributes(label.removesuffix("_mean"), name))
     coordinate = (name, points.values, {"units": units, "long_name": LAW_VARIABLES[name].long_name})
     points_found = xr.Dataset(found, attrs=_attributes(dataset, name, branch)).assign_coords({name: coordinate})
     return points_found if np.ndim(wanted) else points_found.isel({name: 0})

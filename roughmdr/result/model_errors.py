@@ -14,18 +14,15 @@ from roughmdr.model_error.parts import PARTS
 from roughmdr.numerics.arguments import Floats
 from roughmdr.result.view import Leg, ResultView
 from roughmdr.storage.labelled import Array
-from roughmdr.variables import LATERAL, LAW_VARIABLES, ORIGINS, SEPARATION
+from roughmdr.variables import LATERAL, LAW_VARIABLES, MODEL_ERROR, ORIGINS, SEPARATION, WITH_MODEL_ERROR
 
 if TYPE_CHECKING:
     import xarray as xr
 
-SUFFIX = "_model_error"
-"""Ending of the names of errors of the model."""
 FORCES = ("force", "pressure")
 """Variables that tell the force; the first one that a result has counts."""
 _AREAS = ("contact_fraction", "contact_area")
 _H = SEPARATION.name
-_KNOWN = {*QUANTITIES, *FORCES, _H}
 _STATED = "model_error_curve"
 _NUMBERS = (*PARTS, "largest_contact_fraction", "asperity_origin")
 _GRID, _BY_JKR = "grid_points", "adhesion_range_error"
@@ -109,7 +106,7 @@ def attributes(name: str, given: str) -> dict[str, str]:
 def known_in(result: ResultView, curves: Collection[str]) -> list[str]:
     """Return the names of ``curves`` whose error is known: none under a body, on a lateral path, without a force."""
     told = set(result.variables) >= {*_NUMBERS} and result.flat and result.control != LATERAL.name
-    bare = {name.removesuffix("_mean"): name for name in curves if name.removesuffix("_mean") in _KNOWN}
+    bare = {name.removesuffix("_mean"): name for name in curves if name.removesuffix("_mean") in WITH_MODEL_ERROR}
     return list(bare.values()) if told and not set(FORCES).isdisjoint(bare) and _H in bare else []
 
 
@@ -171,7 +168,7 @@ def errors_along(result: ResultView) -> dict[str, Array]:
     changes = [_changes(each, result.legs) for each in curves]
     kept = names.index(kept_by(given, names))
     return {
-        f"{label}{SUFFIX}": Array(
+        f"{label}{MODEL_ERROR}": Array(
             dims, at_given(error, change, errors[kept], changes[kept], name=name, given=given), attributes(name, given)
         )
         for label, name, error, change in zip(labels, names, errors, changes, strict=True)

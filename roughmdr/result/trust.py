@@ -128,8 +128,8 @@ def trust_of_result(result: ResultView) -> Iterator[tuple[str, str]]:
 
 
 def largest_at_force(numbers: Numbers) -> dict[str, float]:
-    """Return the largest relative errors of quantities at given force [1], by their names; none of earlier versions."""
-    if "asperity_origin" not in numbers:
+    """Return the largest relative errors of quantities at given force [1], by their names; none if a number is not."""
+    if not numbers.keys() >= set(_AT_FORCE):
         return {}
     of_runs = {name: np.asarray(numbers[name], dtype=np.float64)[..., None] for name in _AT_FORCE}
     interaction, fraction, origin = (of_runs.pop(name) for name in _BESIDE_PARTS)

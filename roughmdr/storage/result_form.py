@@ -12,12 +12,14 @@ from roughmdr.variables import (
     CELL_VARIABLES,
     COORDINATES,
     LAW_VARIABLES,
+    MODEL_ERROR,
     PULL_OFF_NUMBERS,
     PULL_OFF_OF_CELLS,
     PULL_OFF_PER_AREA,
     RUN_DIAGNOSTICS,
     STATISTICS,
     STEP_COORDINATES,
+    WITH_MODEL_ERROR,
     Attribute,
     Variable,
 )
@@ -66,6 +68,11 @@ def forms_of(runs: tuple[str, ...]) -> dict[str, Form]:
         each: Form.of(variable, dims[name])
         for name, variable in over_runs.items()
         for each in (name, *statistics_of(name))
+    }
+    forms |= {
+        f"{name}{statistic}{MODEL_ERROR}": Form.of(LAW_VARIABLES[name], (*runs, "step"))
+        for name in WITH_MODEL_ERROR
+        for statistic in ("", "_mean")
     }
     forms |= {name: Form.of(variable, runs) for name, variable in RUN_DIAGNOSTICS.items()}
     return forms | {name: Form.of(each, cells) for name, each in (PULL_OFF_OF_CELLS | CELL_VARIABLES).items()}

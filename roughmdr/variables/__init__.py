@@ -15,6 +15,7 @@ from roughmdr.variables.law import (
     LAW_VARIABLES,
     LOSSES,
     MEASURED,
+    MODEL_ERROR,
     NOMINAL_VARIABLES,
     OUTPUT_VARIABLES,
     PRELOADS,
@@ -25,6 +26,7 @@ from roughmdr.variables.law import (
     TANGENTIAL_VARIABLES,
     TIME,
     TRAVEL,
+    WITH_MODEL_ERROR,
 )
 from roughmdr.variables.run import (
     ADHESION_CODES,
@@ -72,6 +74,7 @@ __all__ = [
     "LAW_VARIABLES",
     "LOSSES",
     "MEASURED",
+    "MODEL_ERROR",
     "NOMINAL_VARIABLES",
     "NOT_RUN",
     "ORIGINS",
@@ -95,6 +98,7 @@ __all__ = [
     "TANGENTIAL_VARIABLES",
     "TIME",
     "TRAVEL",
+    "WITH_MODEL_ERROR",
     "Attribute",
     "Diagnostic",
     "Variable",

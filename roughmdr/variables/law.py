@@ -53,6 +53,15 @@ REMOTE = Variable(
 TIME = Variable("time", "s", "time since the first step")
 """A coordinate of a viscoelastic law."""
 
+MODEL_ERROR = "_model_error"
+"""Ending of the names of errors of the model."""
+WITH_MODEL_ERROR = (
+    SEPARATION.name,
+    *("force", "pressure", "contact_area", "contact_fraction", "stiffness", "contact_radius_sum", "conductance_radius"),
+    *CONDUCTANCES,
+)
+"""Variables whose error of the model can be told."""
+
 REFERENCE_VARIABLES = declare(
     ("reference_force", "N", "normal force by boundary elements"),
     ("reference_contact_area", "m2", "contact area by boundary elements"),

@@ -9,8 +9,9 @@ from scenes import CONDUCTION, ensemble, scene
 
 import roughmdr as rm
 from roughmdr.model_error.at_force import METHODS, QUANTITIES
-from roughmdr.result.model_errors import SUFFIX, errors_along
+from roughmdr.result.model_errors import errors_along
 from roughmdr.result.view import ResultView
+from roughmdr.variables import MODEL_ERROR
 
 _VARIABLES = ["force", "pressure", "contact_area", "stiffness", "conductance_radius", "contact_radius_sum"]
 _PATH = {"separation": {"start": "4 sigma", "stop": "0.5 sigma", "steps": 60}}
@@ -24,7 +25,7 @@ def run(**changes: Any) -> xr.Dataset:
 
 def over_truth(found: xr.Dataset, name: str) -> xr.DataArray:
     """The error of a value over the true one, where the value is too small by it."""
-    error = found[f"{name}{SUFFIX}"]
+    error = found[f"{name}{MODEL_ERROR}"]
     return error / (error + found[name])
 
 
@@ -35,7 +36,7 @@ def result() -> xr.Dataset:
 
 def test_at_a_given_force_the_force_has_no_error_and_the_area_that_of_its_share(result: xr.Dataset) -> None:
     there = result.roughmdr.at_pressure([50.0, 500.0])
-    assert bool((there[f"force{SUFFIX}"] == 0.0).all())
+    assert bool((there[f"force{MODEL_ERROR}"] == 0.0).all())
     own = result.roughmdr.at_separation(there.separation.values[0], branch="loading").isel(realization=0)
     interaction = over_truth(own, "force") - float(result.slope_error[0])
     share = METHODS["asperities", False].errors[QUANTITIES["contact_area"]].share
@@ -43,8 +44,8 @@ def test_at_a_given_force_the_force_has_no_error_and_the_area_that_of_its_share(
     found = there.isel(realization=0)
     np.testing.assert_allclose(over_truth(found, "contact_area"), expected, rtol=2e-2)
     for name in ("contact_area", "separation", "stiffness"):
-        assert f"{name}{SUFFIX}" in there[name].attrs["ancillary_variables"]
-        assert there[f"{name}{SUFFIX}"].attrs["units"] == there[name].attrs["units"]
+        assert f"{name}{MODEL_ERROR}" in there[name].attrs["ancillary_variables"]
+        assert there[f"{name}{MODEL_ERROR}"].attrs["units"] == there[name].attrs["units"]
 
 
 def test_at_a_given_separation_the_error_of_the_force_is_that_of_the_curve(result: xr.Dataset) -> None:
@@ -59,8 +60,8 @@ def test_the_separation_is_off_by_the_error_of_the_force_over_the_slope(result: 
     errors = errors_along(ResultView(result))
     slope = np.gradient(one.force.values, one.separation.values)
     at = one.roughmdr.at_force(one.force.values[[30, 45]])
-    expected = errors[f"force{SUFFIX}"].values[0, [30, 45]] / np.abs(slope[[30, 45]])
-    np.testing.assert_allclose(at[f"separation{SUFFIX}"], expected, rtol=1e-6)
+    expected = errors[f"force{MODEL_ERROR}"].values[0, [30, 45]] / np.abs(slope[[30, 45]])
+    np.testing.assert_allclose(at[f"separation{MODEL_ERROR}"], expected, rtol=1e-6)
 
 
 @pytest.mark.parametrize("interaction", [None, {"model": "mean_field"}], ids=["independent", "mean field"])
@@ -72,7 +73,7 @@ def test_without_the_curve_of_the_error_the_errors_are_those_with_it(interaction
         (with_it.roughmdr.at_pressure([50.0, 500.0]), with_it.roughmdr.at_contact_fraction([1e-3])),
         strict=True,
     ):
-        for name in (name for name in found.data_vars if name.endswith(SUFFIX)):
+        for name in (name for name in found.data_vars if name.endswith(MODEL_ERROR)):
             np.testing.assert_allclose(found[name], expected[name], rtol=1e-9, err_msg=str(name))
 
 
@@ -95,8 +96,8 @@ def test_units_do_not_matter() -> None:
         h = np.linspace(4e-6, 0.5e-6, 50) * length
         law = rm.load_separation(made, separation=h, effective_modulus=modulus, variables=_VARIABLES)
         there = law.roughmdr.at_pressure(1e-4 * modulus)
-        return {str(name): float(there[name] / abs(there[str(name).removesuffix(SUFFIX)])) for name in there
-                if str(name).endswith(SUFFIX) and "force" not in str(name)}  # fmt: skip
+        return {str(name): float(there[name] / abs(there[str(name).removesuffix(MODEL_ERROR)])) for name in there
+                if str(name).endswith(MODEL_ERROR) and "force" not in str(name)}  # fmt: skip
 
     first, other = shares(1.0, 1e6), shares(1e-6, 1e11)
     assert first.keys() == other.keys()
@@ -124,7 +125,7 @@ def test_conductances_have_the_error_of_their_radius() -> None:
         output={"variables": ["force", "conductance_radius", "thermal_conductance", "electrical_conductance"]},
     )  # fmt: skip
     there = rm.run(table).isel(realization=0).roughmdr.at_force("1 mN")
-    shares = {float(there[f"{name}{SUFFIX}"] / there[name]) for name in table["output"]["variables"][1:]}
+    shares = {float(there[f"{name}{MODEL_ERROR}"] / there[name]) for name in table["output"]["variables"][1:]}
     assert max(shares) == pytest.approx(min(shares), rel=1e-9)
 
 
@@ -135,12 +136,12 @@ def test_under_a_body_nothing_is_stated() -> None:
         path={"separation": ["3 um", "1 um", "0 um"]},
     )  # fmt: skip
     there = rm.run(table).roughmdr.at_force("1 uN")
-    assert not [name for name in there if str(name).endswith(SUFFIX)]
+    assert not [name for name in there if str(name).endswith(MODEL_ERROR)]
 
 
 def test_a_result_in_chunks_stays_lazy_and_has_the_same_errors(result: xr.Dataset) -> None:
     lazy = result.chunk(realization=1).roughmdr.at_pressure([50.0, 500.0])
-    assert lazy[f"contact_area{SUFFIX}"].chunks is not None
+    assert lazy[f"contact_area{MODEL_ERROR}"].chunks is not None
     xr.testing.assert_allclose(lazy.compute(), result.roughmdr.at_pressure([50.0, 500.0]))
 
 
@@ -155,5 +156,7 @@ def test_of_a_reference_that_is_given_the_errors_are_those_at_its_separation() -
     given = 0.5 * float(made.reference_force.max())
     there = made.roughmdr.at_force(given, reference=True)
     own = made.roughmdr.at_separation(float(there.separation))
-    assert float(there[f"force{SUFFIX}"]) == pytest.approx(float(own[f"force{SUFFIX}"]), rel=0.05)
-    assert float(there[f"contact_area{SUFFIX}"]) == pytest.approx(float(own[f"contact_area{SUFFIX}"]), rel=0.2)
+    assert float(there[f"force{MODEL_ERROR}"]) == pytest.approx(float(own[f"force{MODEL_ERROR}"]), rel=0.05)
+    assert float(there[f"contact_area{MODEL_ERROR}"]) == pytest.approx(
+        float(own[f"contact_area{MODEL_ERROR}"]), rel=0.2
+    )

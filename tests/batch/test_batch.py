@@ -72,7 +72,7 @@ def test_the_contract_of_the_result(base: xr.Dataset) -> None:
         *(f"pull_off_{name}" for name in ("pressure", "contact_fraction")),
         "pull_off_count", "pull_off_force_of_mean", "pull_off_pressure_of_mean", "nominal_area", "run_time",
         "numerical_error", "model_error", *PARTS, "overlap_fraction", "largest_contact_fraction",
-        "effective_contacts", "trusted_separation", "edge_slope", "profile_extent", "status",
+        "asperity_origin", "effective_contacts", "trusted_separation", "edge_slope", "profile_extent", "status",
     ]  # fmt: skip
     for name in ("force", "contact_area", "contact_count", "stiffness"):
         assert base[name].dims == ("realization", "step")

@@ -10,11 +10,11 @@ from roughmdr.report.export.law import Quantity, Source
 from roughmdr.report.export.table import RELATIVE_FROM, Table
 from roughmdr.report.export.units import UnitSystem
 from roughmdr.result.between import CONFIDENCE
-from roughmdr.result.model_errors import FORCES, SUFFIX, errors_along
+from roughmdr.result.model_errors import FORCES, errors_along
 from roughmdr.result.trust import trust_of_result
 from roughmdr.result.view import ResultView
 from roughmdr.schema.wording import gathered
-from roughmdr.variables import CONDUCTANCES, TIME
+from roughmdr.variables import CONDUCTANCES, MODEL_ERROR, TIME
 
 
 def origin_lines(cell: ResultView, words: str) -> Iterator[tuple[str, str]]:
@@ -66,7 +66,7 @@ def table_lines(
         yield "departure", f"up to {departure} at steps that a load jumps over"
     yield from model_lines(cell)
     if variable not in FORCES and not quantity.over_pressure:
-        error = errors_along(cell).get(f"{variable}{'_mean' if cell.keeps_statistics else ''}{SUFFIX}")
+        error = errors_along(cell).get(f"{variable}{'_mean' if cell.keeps_statistics else ''}{MODEL_ERROR}")
         if error is not None:
             share = float(np.fmax.reduce(error.values, axis=None)) / float(
                 np.fmax.reduce(cell.mean(variable)[0], axis=None)
