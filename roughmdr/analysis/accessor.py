@@ -58,7 +58,7 @@ class Analysis:
         -------
         xarray.Dataset
             ``force``, ``force_sem`` (standard error), ``force_model_error`` [N], ``separation`` [m], ``contacts`` [1],
-            ``pressure`` [Pa], ``contact_fraction`` [1], ``count`` [1] of pull-offs and ``force_of_mean`` [N] if it has it.
+            ``pressure`` [Pa], ``contact_fraction`` [1], ``count`` [1] of pull-offs and ``force_of_mean`` [N] if held.
 
         Raises
         ------

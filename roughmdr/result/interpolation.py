@@ -39,6 +39,8 @@ def at_value(dataset: "xr.Dataset", name: str, values: ArrayLike, branch: str) -
     result = result_of(dataset)
     units = (LAW_VARIABLES | {SEPARATION.name: SEPARATION})[name].units
     wanted = check_values(name, values, units)
+    if not np.size(wanted):
+        raise OutOfRange(f"{name} is empty; give at least one value")
     if name.endswith("contact_fraction") and np.max(wanted) > 1.0:
         raise OutOfRange(f"{name} is {np.max(wanted):g}; it must be at most 1")
     on = Branch(result, branch)

@@ -69,6 +69,11 @@ def test_a_value_that_is_never_reached_has_none(curves: xr.Dataset) -> None:
     assert "never reaches the force" in there.attrs["comment"]
 
 
+def test_no_value_at_all_is_refused(curves: xr.Dataset) -> None:
+    with pytest.raises(rm.OutOfRange, match="force is empty; give at least one value"):
+        curves.roughmdr.at_force([])
+
+
 def test_under_a_dead_load_the_separation_is_a_variable(dead_load: xr.Dataset) -> None:
     there = dead_load.roughmdr.at_force(125e-6)
     mean = dead_load.separation.isel(step=[1, 2]).mean("step")
