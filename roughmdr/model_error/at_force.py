@@ -98,13 +98,12 @@ _PULL_OFF: dict[tuple[Origin, bool], Callable[[Floats], Floats]] = {
 def relative_at_force(
     interaction: Floats, fraction: Floats, others: Floats, origin: Floats, coupled: NDArray[np.bool_]
 ) -> list[Floats]:
-    """Return the relative errors [1] of the quantities at given force, at most 1: [..., step] each.
+    """Return the relative errors [1] of the quantities at given force, at most 1: [...] each.
 
-    ``interaction`` is the error by interaction of the force at given separation, ``fraction`` the contact fraction;
-    ``others`` are all other parts of the error, ``origin`` the code of ``ORIGINS``, of a run the same at all steps.
+    ``interaction`` is the error by interaction of the force at given separation, ``fraction`` the contact fraction,
+    ``others`` are all other parts of the error, ``origin`` the code of ``ORIGINS``: arrays that go together.
     """
-    shape = np.broadcast_shapes(interaction.shape, fraction.shape, origin.shape)
-    found = [np.zeros(shape) for _ in range(4)]
+    found = [np.zeros(np.broadcast_shapes(interaction.shape, fraction.shape, origin.shape)) for _ in NAMES]
     for method, own in _methods(origin, coupled):
         for error, (share, constant, root) in zip(found, method.errors, strict=True):
             np.copyto(error, share * interaction + constant + root * np.sqrt(fraction) + others, where=own)
@@ -112,16 +111,17 @@ def relative_at_force(
     return [np.minimum(error, 1.0) * touching for error in found]
 
 
-def along_path(largest: Floats, fraction: Floats, origin: Floats, coupled: NDArray[np.bool_]) -> Floats:
-    """Return the error by interaction at each step [1] from the ``largest`` of the path, as ``relative_at_force``.
+def interaction_along(
+    largest: Floats, fraction: Floats, largest_fraction: Floats, origin: Floats, coupled: NDArray[np.bool_]
+) -> Floats:
+    """Return the error by interaction [1] at a contact fraction, from the ``largest`` of a path and the fraction there.
 
     It is for results that store the largest alone.
     """
     found = np.zeros(np.broadcast_shapes(largest.shape, fraction.shape, origin.shape))
-    most = np.fmax.reduce(fraction, axis=-1, keepdims=True)
     for method, own in _methods(origin, coupled):
-        here, there = method.interaction(fraction), method.interaction(most)
-        share = np.divide(here, there, out=np.zeros(np.broadcast_shapes(here.shape, there.shape)), where=there > 0.0)
+        here, there = np.broadcast_arrays(method.interaction(fraction), method.interaction(largest_fraction))
+        share = np.divide(here, there, out=np.zeros(here.shape), where=there > 0.0)
         np.copyto(found, largest * share, where=own)
     return found
 

@@ -19,7 +19,7 @@ from roughmdr.result.curves import (
     stored_curves,
     whole,
 )
-from roughmdr.result.model_errors import at_given, attributes, errors_over_steps, kept_by
+from roughmdr.result.model_errors import errors_there
 from roughmdr.result.view import ResultView
 from roughmdr.schema.arguments import check_values
 from roughmdr.variables import LAW_VARIABLES, MODEL_ERROR, SEPARATION
@@ -86,24 +86,10 @@ def at_value(dataset: "xr.Dataset", name: str, values: ArrayLike, branch: str) -
         about = {"long_name": f"interpolation error of the {attrs['long_name']}"}
         found[label] = value.assign_attrs(attrs | {"ancillary_variables": f"{label}_interpolation_error"})
         found[f"{label}_interpolation_error"] = error.assign_attrs(attrs | about)
-    errors = errors_over_steps(result, curves | {name: reached})
-    if errors:
-        bare = {label.removesuffix("_mean"): label for label in errors}
-        kept = bare[kept_by(name, bare)]
-    for label in errors.keys() - {name}:
-        error = xr.apply_ufunc(
-            at_given,
-            there(errors[label])[0],
-            changes[label],
-            there(errors[kept])[0],
-            changes[kept],
-            kwargs={"name": label.removesuffix("_mean"), "given": name},
-            keep_attrs=False,
-            dask="parallelized",
-            output_dtypes=[np.float64],
-        )
+    here = {**{label: found[label] for label in curves}, name: points.broadcast_like(changes[name])}
+    for label, error in errors_there(result, name, curves | {name: reached}, here, changes).items():
         found[label].attrs["ancillary_variables"] += f" {label}{MODEL_ERROR}"
-        found[f"{label}{MODEL_ERROR}"] = error.assign_attrs(attributes(label.removesuffix("_mean"), name))
+        found[f"{label}{MODEL_ERROR}"] = error
     coordinate = (name, points.values, {"units": units, "long_name": LAW_VARIABLES[name].long_name})
     points_found = xr.Dataset(found, attrs=_attributes(dataset, name, branch)).assign_coords({name: coordinate})
     return points_found if np.ndim(wanted) else points_found.isel({name: 0})

@@ -5,11 +5,11 @@ the slope of the law. Where another quantity C is given, X is off by its change 
 """
 
 from collections.abc import Collection, Mapping, Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from roughmdr.model_error.at_force import QUANTITIES, along_path, relative_at_force
+from roughmdr.model_error.at_force import QUANTITIES, interaction_along, relative_at_force
 from roughmdr.model_error.parts import PARTS
 from roughmdr.numerics.arguments import Floats
 from roughmdr.result.view import Leg, ResultView
@@ -23,77 +23,62 @@ FORCES = ("force", "pressure")
 """Variables that tell the force; the first one that a result has counts."""
 _AREAS = ("contact_fraction", "contact_area")
 _H = SEPARATION.name
-_STATED = "model_error_curve"
-_NUMBERS = (*PARTS, "largest_contact_fraction", "asperity_origin")
-_GRID, _BY_JKR = "grid_points", "adhesion_range_error"
+_STATED, _BY_JKR = "model_error_curve", "adhesion_range_error"
+_NUMBERS = (*PARTS, "largest_contact_fraction", "asperity_origin", "grid_points")
 _MOST = 0.9
 """Largest relative error that a value is corrected for: of a value that is too small by more nothing is left."""
-_OWN = "own"
-"""Dimension of length 1 in place of the steps, of numbers of a run."""
 
 
-def errors_at_force(*arrays: Floats, names: Sequence[str], legs: Sequence[Leg], adheres: bool) -> tuple[Floats, ...]:
-    """Return the error of each of the ``names`` at given force, of a force that at given separation: [..., step].
+def errors_at(*arrays: Floats, names: Sequence[str], given: str, adheres: bool) -> tuple[Floats, ...]:
+    """Return the error of each of the ``names`` where a quantity is ``given``: arrays that go together, [...].
 
-    Arrays are contact fraction and model_error_curve, NaN where they are not known, and the variables, [..., step];
-    then the numbers of the runs and the points of their grids, [..., 1].
+    Arrays are contact fraction and model_error_curve, NaN where they are not known, the largest force of the path, the
+    variables and how much each changes over a step there, and the numbers of the run.
     """
-    fraction, stated = arrays[:2]
-    curves = dict(zip(names, arrays[2:], strict=False))
-    numbers = dict(zip((*_NUMBERS, _GRID), arrays[2 + len(names) :], strict=True))
-    force_name = _first(FORCES, curves)
-    of_force, over_largest, at_force = _relative_errors(curves[force_name], fraction, stated, numbers, adheres)
+    fraction, stated, largest = arrays[:3]
+    count = len(names)
+    values = dict(zip(names, arrays[3 : 3 + count], strict=True))
+    changes = dict(zip(names, arrays[3 + count : 3 + 2 * count], strict=True))
+    numbers = dict(zip(_NUMBERS, arrays[3 + 2 * count :], strict=True))
+    force = _first(FORCES, names)
+    whole, over_largest, at_force = _relative_errors(values[force], fraction, stated, numbers, adheres)
+    of_force = np.abs(values[force]) * _over_value(whole - over_largest) + largest * over_largest
+    shift = _over(of_force, changes[force])
+
+    def at_given_force(name: str) -> Floats:
+        if name == _H:
+            return shift * np.abs(changes[_H])
+        return np.abs(values[name]) * _over_value(at_force[QUANTITIES[name]])
+
+    kept = next((_first(alike, names) for alike in (FORCES, _AREAS) if given in alike), _H)
+    moved = 0.0 * shift if kept in FORCES else _over(at_given_force(kept), changes[kept])
 
     def error(name: str) -> Floats:
-        size = np.abs(curves[name])
-        if name in QUANTITIES:
-            return size * _over_value(at_force[QUANTITIES[name]])
-        if name == _H:
-            return _over(error(force_name), _changes(curves[force_name], legs)) * np.abs(_changes(curves[_H], legs))
-        largest: Floats = np.fmax.reduce(size, axis=-1, keepdims=True)
-        return size * _over_value(of_force) + largest * over_largest
+        if name not in FORCES:
+            return at_given_force(name) + np.abs(changes[name]) * moved
+        return of_force * _over(np.abs(changes[name]), changes[force]) if kept == _H else np.abs(changes[name]) * moved
 
-    return tuple(error(name) for name in names)
+    return tuple(np.broadcast_arrays(*(error(name) for name in names)))
 
 
 def _relative_errors(
     force: Floats, fraction: Floats, stated: Floats, numbers: Mapping[str, Floats], adheres: bool
 ) -> tuple[Floats, Floats, list[Floats]]:
-    """Return the error of the force at given separation over itself, the part over the largest force, and errors [1] of
-    quantities at given force.
+    """Return the error of the force at given separation, its part over the largest force, and errors [1] of quantities
+    at given force.
     """
-    touching, origin, coupled = force != 0.0, numbers["asperity_origin"], np.isfinite(numbers[_GRID])
-    interaction, by_jkr = numbers["interaction_error"], numbers[_BY_JKR]
+    touching, origin, coupled = force != 0.0, numbers["asperity_origin"], np.isfinite(numbers["grid_points"])
+    interaction, by_jkr, most = (numbers[name] for name in ("interaction_error", _BY_JKR, "largest_contact_fraction"))
     others = np.add.reduce([numbers[name] for name in PARTS if name not in ("interaction_error", _BY_JKR)])
-    fraction = np.where(np.isnan(fraction), np.where(touching, numbers["largest_contact_fraction"], 0.0), fraction)
-    foreseen = along_path(interaction, fraction, origin, coupled) + np.where(touching, others + by_jkr, 0.0)
+    fraction = np.where(np.isnan(fraction), np.where(touching, most, 0.0), fraction)
+    foreseen = interaction_along(interaction, fraction, most, origin, coupled)
+    foreseen += np.where(touching, others + by_jkr, 0.0)
     whole = np.where(np.isnan(stated), np.minimum(foreseen, 1.0), stated)
     sticky_hills = adheres & (origin == ORIGINS.index("hills"))
     over_largest = np.where(sticky_hills, whole, np.minimum(whole, by_jkr))
     own = np.maximum(whole - over_largest - np.where(touching, others, 0.0), 0.0)
     at_force = relative_at_force(own, fraction, others + by_jkr, origin, coupled)
-    at_force = [np.where(sticky_hills, np.fmax(each, whole), each) for each in at_force]
-    return whole - over_largest, over_largest, at_force
-
-
-def kept_by(given: str, names: Collection[str]) -> str:
-    """Return the variable, of ``names``, that is known exactly where a quantity is given; the separation for others.
-
-    A quantity of the reference is given at a separation, and that of a path is.
-    """
-    alike = next((each for each in (FORCES, _AREAS) if given in each), (_H,))
-    return _first(alike, names)
-
-
-def at_given(error: Floats, change: Floats, kept: Floats, kept_change: Floats, *, name: str, given: str) -> Floats:
-    """Return the error of a variable where a quantity is ``given``, from those of ``errors_at_force``: [...].
-
-    ``kept`` is the error of the variable that is then known exactly, ``change`` that of both over a step.
-    """
-    shifted = np.abs(change) * _over(kept, kept_change)
-    if name in FORCES:
-        return 0.0 * error if given in FORCES else shifted if given in _AREAS else error
-    return error if given in FORCES else error + shifted
+    return whole, over_largest, [np.where(sticky_hills, np.fmax(each, whole), each) for each in at_force]
 
 
 def attributes(name: str, given: str) -> dict[str, str]:
@@ -105,38 +90,48 @@ def attributes(name: str, given: str) -> dict[str, str]:
 
 def known_in(result: ResultView, curves: Collection[str]) -> list[str]:
     """Return the names of ``curves`` whose error is known: none under a body, on a lateral path, without a force."""
-    told = set(result.variables) >= {*_NUMBERS} and result.flat and result.control != LATERAL.name
-    bare = {name.removesuffix("_mean"): name for name in curves if name.removesuffix("_mean") in WITH_MODEL_ERROR}
+    told = set(result.variables) >= {*_NUMBERS[:-1]} and result.flat and result.control != LATERAL.name
+    bare = {_bare(name): name for name in curves if _bare(name) in WITH_MODEL_ERROR}
     return list(bare.values()) if told and not set(FORCES).isdisjoint(bare) and _H in bare else []
 
 
-def errors_over_steps(result: ResultView, curves: "Mapping[str, xr.DataArray]") -> "dict[str, xr.DataArray]":
-    """Return the errors of variables over the steps, as ``errors_at_force``, from the curves of a result."""
+def errors_there(
+    result: ResultView,
+    given: str,
+    curves: "Mapping[str, xr.DataArray]",
+    there: "Mapping[str, xr.DataArray]",
+    changes: "Mapping[str, xr.DataArray]",
+) -> "dict[str, xr.DataArray]":
+    """Return the errors of curves where a quantity is ``given``, from what they are ``there`` and over that step."""
     import xarray as xr
 
     labels = known_in(result, curves)
     if not labels:
         return {}
-    dataset, bare = result.dataset, {name.removesuffix("_mean"): array for name, array in curves.items()}
-    one = bare[_first(FORCES, bare)]
-    unknown = xr.full_like(one, np.nan)
-    arrays = [bare.get("contact_fraction", unknown), bare.get(_STATED, unknown), *(curves[label] for label in labels)]
-    numbers = [
-        dataset[name] if name in dataset else np.nan * dataset["interaction_error"] for name in (*_NUMBERS, _GRID)
-    ]
-    names = [label.removesuffix("_mean") for label in labels]
-    found = xr.apply_ufunc(
-        errors_at_force,
-        *arrays,
-        *(each.expand_dims(_OWN, axis=-1) for each in numbers),
-        kwargs={"names": names, "legs": result.legs, "adheres": adheres(result)},
-        input_core_dims=[["step"]] * len(arrays) + [[_OWN]] * len(numbers),
-        output_core_dims=[["step"]] * len(labels),
+    dataset, found = result.dataset, {_bare(label): there[label] for label in curves}
+    names = [_bare(label) for label in labels]
+    unknown = np.nan * found[names[0]]
+    largest = abs(curves[labels[names.index(_first(FORCES, names))]]).max("step")
+    numbers = (dataset.get(name, np.nan * dataset["interaction_error"]) for name in _NUMBERS)
+    errors = xr.apply_ufunc(
+        errors_at,
+        found.get("contact_fraction", unknown),
+        found.get(_STATED, unknown),
+        largest,
+        *(there[label] for label in labels),
+        *(changes[label] for label in labels),
+        *numbers,
+        kwargs={"names": names, "given": given, "adheres": adheres(result)},
+        output_core_dims=[[]] * len(labels),
         keep_attrs=False,
         dask="parallelized",
         output_dtypes=[np.float64] * len(labels),
     )
-    return dict(zip(labels, found if len(labels) > 1 else (found,), strict=True))
+    return {
+        label: error.assign_attrs(attributes(name, given))
+        for label, name, error in zip(labels, names, errors, strict=True)
+        if name != given
+    }
 
 
 def errors_along(result: ResultView) -> dict[str, Array]:
@@ -149,29 +144,25 @@ def errors_along(result: ResultView) -> dict[str, Array]:
     labels = known_in(result, [name for name in held if "step" in held[name].dims])
     if not labels or given not in (*FORCES, _H):
         return {}
-    runs = result.variables["interaction_error"].dims
-    dims = (*runs, "step")
+    dims = (*result.variables["interaction_error"].dims, "step")
 
     def values(name: str) -> Floats:
         found = held.get(name, held.get(f"{name}{suffix}"))
         return np.full((1,) * len(dims), np.nan) if found is None else _spread(found, dims)
 
-    names = [label.removesuffix("_mean") for label in labels]
+    names = [_bare(label) for label in labels]
     fraction = values("contact_fraction")
     if np.isnan(fraction).all():
         fraction = values("contact_area") / values("nominal_area")
     curves = [values(name) for name in names]
-    numbers = [values(name) for name in (*_NUMBERS, _GRID)]
-    errors = errors_at_force(
-        fraction, values(_STATED), *curves, *numbers, names=names, legs=result.legs, adheres=adheres(result)
-    )
+    largest = np.fmax.reduce(np.abs(curves[names.index(_first(FORCES, names))]), axis=-1, keepdims=True)
     changes = [_changes(each, result.legs) for each in curves]
-    kept = names.index(kept_by(given, names))
+    numbers = [values(name) for name in _NUMBERS]
+    options: dict[str, Any] = {"names": names, "given": given, "adheres": adheres(result)}
+    errors = errors_at(fraction, values(_STATED), largest, *curves, *changes, *numbers, **options)
     return {
-        f"{label}{MODEL_ERROR}": Array(
-            dims, at_given(error, change, errors[kept], changes[kept], name=name, given=given), attributes(name, given)
-        )
-        for label, name, error, change in zip(labels, names, errors, changes, strict=True)
+        f"{label}{MODEL_ERROR}": Array(dims, np.array(error), attributes(name, given))
+        for label, name, error in zip(labels, names, errors, strict=True)
         if name != given
     }
 
@@ -179,6 +170,11 @@ def errors_along(result: ResultView) -> dict[str, Array]:
 def adheres(result: ResultView) -> bool:
     """Return whether asperities adhere; of a law of one ensemble by its avalanches, which coupled ones alone have."""
     return result.adheres or "avalanche_count" in result.variables
+
+
+def _bare(label: str) -> str:
+    """Return the name of a variable without that of the statistic."""
+    return label.removesuffix("_mean")
 
 
 def _first(names: Sequence[str], among: Collection[str]) -> str:

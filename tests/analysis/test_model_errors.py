@@ -58,15 +58,18 @@ def test_at_a_given_separation_the_error_of_the_force_is_that_of_the_curve(resul
 def test_the_separation_is_off_by_the_error_of_the_force_over_the_slope(result: xr.Dataset) -> None:
     one = result.isel(realization=0)
     errors = errors_along(ResultView(result))
-    slope = np.gradient(one.force.values, one.separation.values)
-    at = one.roughmdr.at_force(one.force.values[[30, 45]])
-    expected = errors[f"force{MODEL_ERROR}"].values[0, [30, 45]] / np.abs(slope[[30, 45]])
+    force, h = one.force.values, one.separation.values
+    slope = np.diff(force)[[29, 44]] / np.diff(h)[[29, 44]]  # of the step that ends there
+    at = one.roughmdr.at_force(force[[30, 45]])
+    expected = errors[f"force{MODEL_ERROR}"].values[0, [30, 45]] / np.abs(slope)
     np.testing.assert_allclose(at[f"separation{MODEL_ERROR}"], expected, rtol=1e-6)
 
 
 @pytest.mark.parametrize("interaction", [None, {"model": "mean_field"}], ids=["independent", "mean field"])
 def test_without_the_curve_of_the_error_the_errors_are_those_with_it(interaction: dict[str, str] | None) -> None:
-    """A result stores the largest error alone; along the path it follows from the contact fraction."""
+    """A result stores the largest error alone; along the path it follows from the contact fraction: the curve itself is
+    a line between steps.
+    """
     with_it, without = (run(interaction=interaction, more=more) for more in (["model_error_curve"], []))
     for found, expected in zip(
         (without.roughmdr.at_pressure([50.0, 500.0]), without.roughmdr.at_contact_fraction([1e-3])),
@@ -74,7 +77,7 @@ def test_without_the_curve_of_the_error_the_errors_are_those_with_it(interaction
         strict=True,
     ):
         for name in (name for name in found.data_vars if name.endswith(MODEL_ERROR)):
-            np.testing.assert_allclose(found[name], expected[name], rtol=1e-9, err_msg=str(name))
+            np.testing.assert_allclose(found[name], expected[name], rtol=5e-3, err_msg=str(name))
 
 
 def test_a_lone_asperity_is_off_by_its_slope_alone() -> None:
