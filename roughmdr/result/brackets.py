@@ -49,12 +49,13 @@ def _first(y: Floats, value: float, before: Ints, usable: NDArray[np.bool_]) -> 
 
 def interpolate(
     curve: Floats, reached: Floats, path: Floats, brackets: Floats, *, branch: Branch, in_jumps: bool
-) -> tuple[Floats, Floats]:
-    """Return curves at brackets [..., value, part] of curves that are ``reached``, with their errors.
+) -> tuple[Floats, Floats, Floats]:
+    """Return curves at brackets [..., value, part] of curves that are ``reached``, with their errors and their changes.
 
     Curves and the ``path``, the controlled quantity, are [..., step]; the returned arrays [..., value]. A bracket gives
     a line, the curve over the reached one. The error is the deviation of the curve from that line between the steps;
     for a curve that changes ``in_jumps`` only, and where too few steps are known, the difference to the farther step.
+    The change is that from the first step of a bracket to its second.
     """
     known = ~np.isnan(brackets[..., FRACTION])
     lower, upper = (np.where(known, brackets[..., part], 0.0).astype(np.int64) for part in (LOWER, UPPER))
@@ -72,7 +73,7 @@ def interpolate(
             around = np.where(there, _at(curve, near) - slope * way, np.nan)
             off = sum(off_line(_at(path, near), around, spreads=AT_A_PLACE))
             error = np.where(np.isnan(off), error, off)
-    return value, np.where(np.isnan(value), np.nan, error)
+    return value, np.where(np.isnan(value), np.nan, error), rise
 
 
 def _near(lower: Ints, upper: Ints, branch: Branch) -> tuple[Ints, NDArray[np.bool_]]:

@@ -19,6 +19,7 @@ from roughmdr.result.curves import (
     stored_curves,
     whole,
 )
+from roughmdr.result.grid_errors import Read, grid_errors
 from roughmdr.result.view import ResultView
 from roughmdr.schema.arguments import check_values
 from roughmdr.variables import LAW_VARIABLES, SEPARATION
@@ -57,9 +58,9 @@ def at_value(dataset: "xr.Dataset", name: str, values: ArrayLike, branch: str) -
         output_dtypes=[np.float64],
         dask_gufunc_kwargs={"output_sizes": {_BRACKET: 3}},
     )
-    found: dict[str, xr.DataArray] = {}
-    for label, array in _curves(result, name).items():
-        value, error = xr.apply_ufunc(
+    found, read = dict[str, xr.DataArray](), dict[str, Read]()
+    for label, array in ({name: reached} | _curves(result, name)).items():
+        value, error, rise = xr.apply_ufunc(
             interpolate,
             array,
             reached,
@@ -67,15 +68,19 @@ def at_value(dataset: "xr.Dataset", name: str, values: ArrayLike, branch: str) -
             brackets,
             kwargs={"branch": on, "in_jumps": label.removesuffix("_mean") in _IN_JUMPS},
             input_core_dims=[["step"], ["step"], ["step"], [name, _BRACKET]],
-            output_core_dims=[[name], [name]],
+            output_core_dims=[[name]] * 3,
             keep_attrs=False,
             dask="parallelized",
-            output_dtypes=[np.float64, np.float64],
+            output_dtypes=[np.float64] * 3,
         )
+        read[label.removesuffix("_mean")] = Read(label, value, rise)
+        if label == name:
+            continue
         attrs = {key: array.attrs[key] for key in ("units", "long_name") if key in array.attrs}
         about = {"long_name": f"interpolation error of the {attrs['long_name']}"}
         found[label] = value.assign_attrs(attrs | {"ancillary_variables": f"{label}_interpolation_error"})
         found[f"{label}_interpolation_error"] = error.assign_attrs(attrs | about)
+    found |= grid_errors(read, name)
     coordinate = (name, points.values, {"units": units, "long_name": LAW_VARIABLES[name].long_name})
     points_found = xr.Dataset(found, attrs=_attributes(dataset, name, branch)).assign_coords({name: coordinate})
     return points_found if np.ndim(wanted) else points_found.isel({name: 0})
