@@ -111,14 +111,11 @@ class Reference(Stage):
     def _beside(self, law: "LoadSeparation", scene: Given, separation: "Floats", drawn: Drawn) -> "LoadSeparation":
         """Return the law of a realisation with the variables of its reference; NaN where that has no equilibrium."""
         from roughmdr.elements.refine import errors, solve_to_error
-        from roughmdr.elements.surface import surface_of_asperities, surface_of_map
+        from roughmdr.elements.surface import surface_of
 
         ensemble = drawn.ensemble
         height_map = scene.asperities.height_map(scene.seed, drawn.realization)
-        if height_map is None:
-            surface = surface_of_asperities(ensemble, float(separation.min()), periodic=scene.repeats)
-        else:
-            surface = surface_of_map(height_map, ensemble.height, periodic=scene.repeats)
+        surface = surface_of(ensemble, height_map, float(separation.min()), periodic=scene.repeats)
         stiffness = not {"stiffness", RADIUS}.isdisjoint(of_contacts(law.variables))
         found = solve_to_error(surface, separation, scene.effective_modulus, self.error, stiffness=stiffness)
         numbers = [

@@ -82,6 +82,10 @@ def test_variables_beside_those_that_are_asked_for() -> None:
     for name in ("reference_force", "reference_pressure", "reference_contact_fraction", "reference_error"):
         np.testing.assert_allclose(found[f"{name}_mean"], curves[name].mean("realization"), rtol=1e-12)
     assert "reference_stiffness" not in curves
+    there = found.roughmdr.at_pressure("2 kPa", reference=True)
+    stated = there.reference_area_error_mean * there.reference_contact_fraction_mean
+    np.testing.assert_allclose(there.reference_contact_fraction_mean_error, stated, rtol=1e-12)
+    assert 0.0 < float(there.reference_separation_error) < 1e-8
     np.testing.assert_allclose(curves["reference_pressure"], curves["reference_force"] / 1e-8, rtol=1e-12)
 
 
