@@ -115,11 +115,11 @@ class Analysis:
         Returns
         -------
         xarray.Dataset
-            Linear between the two steps around the value (pressure and contact fraction from force, contact area and
-            nominal_area where the result does not hold them); NaN where it is never reached. Beside each ``NAME`` its
-            ``NAME_interpolation_error``, which holds in 97 % of cases: from the bends and jumps of the steps around; of
-            curves that only jump, such as contact_count, or of fewer than four steps, the difference to the farther.
-            Beside what is no count or energy also ``NAME_model_error``, by the assumptions of the model at given value.
+            Linear between the two steps around the value (also pressure and contact fraction where not held); NaN where
+            it is never reached. Beside each ``NAME`` its ``NAME_interpolation_error``, which holds in 97 % of cases, by
+            bends and jumps around; of contact_count and the like, or of fewer than four steps, the difference to the
+            farther. Beside what is no count or energy ``NAME_model_error``, by the assumptions of the model there; of a
+            reference ``reference_NAME_error``, by its grid: at the separation, or ``reference``'s value.
 
         Raises
         ------

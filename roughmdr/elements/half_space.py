@@ -25,6 +25,9 @@ is accurate to 1 %."""
 _EDGE_SHARE = (math.pi - 1.0 + math.log(2.0)) / 24.0
 """Area to take off for each side of a cell on the edge of a contact, in cells: the mean over directions of the edge
 (V. A. Yastrebov, G. Anciaux, J.-F. Molinari, Tribol. Int. 114 (2017), 161)."""
+_OF_ALL_SIDES, _OF_EACH_SIDE = 0.015, 0.4
+"""Error of the area by the sides of cells at the edges, in cells: by their number, as the mean over directions of one
+shape is not that of another, and by its root, as each is off on its own (``pipelines/study.py hills``)."""
 
 
 class Patches(NamedTuple):
@@ -35,6 +38,8 @@ class Patches(NamedTuple):
     """Areas, in the square of the unit of the sides."""
     radius_sum: float
     """Sum of the radii of discs of these areas, in the unit of the sides."""
+    area_error: float
+    """Error of the summed area by the cells at the edges, at given force, in the square of the unit of the sides."""
 
 
 class BoundaryElements:
@@ -141,7 +146,9 @@ class BoundaryElements:
             edges += np.bincount(labels[loaded & ~beside], minlength=count + 1)
         area = (cells - _EDGE_SHARE * edges)[1:] * self.cell_area
         radius_sum = math.fsum(np.sqrt(area / math.pi).tolist())
-        return Patches(count, math.fsum(area.tolist()), radius_sum)
+        sides = float(edges.sum())
+        error = (_OF_ALL_SIDES * sides + _OF_EACH_SIDE * math.sqrt(sides)) * self.cell_area
+        return Patches(count, math.fsum(area.tolist()), radius_sum, error)
 
 
 def _dot(a: Floats, b: Floats) -> float:

@@ -76,7 +76,8 @@ def _along(
             continue
         patches = grid.patches()
         error = _cell_error(grid, summits, h, force, patches)
-        steps.append(Step(force, patches.radius_sum, patches.area, rigidity, patches.contacts, error))
+        totals = force, patches.radius_sum, patches.area, rigidity, patches.contacts, error
+        steps.append(Step(*totals, area_error=patches.area_error))
     farther = np.minimum(_OF_COARSER * np.maximum.accumulate(changes[::-1])[::-1], 1.0).tolist()
     return [
         step._replace(error=max(step.error, change * step.force)) for step, change in zip(steps, farther, strict=True)
@@ -114,4 +115,5 @@ def _in_si(step: Step, length: float, modulus: float) -> Step:
         modulus * length * step.stiffness,
         step.contacts,
         modulus * area * step.error,
+        area_error=area * step.area_error,
     )

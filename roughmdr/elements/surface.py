@@ -45,6 +45,13 @@ def grid_shape(sides: Floats, points: float) -> tuple[int, int]:
     return x, y
 
 
+def surface_of(ensemble: Ensemble, height_map: HeightMap | None, lowest: float, *, periodic: bool) -> Surface:
+    """Return the map that asperities are of, or where there is none the surface that they make together."""
+    if height_map is None:
+        return surface_of_asperities(ensemble, lowest, periodic=periodic)
+    return surface_of_map(height_map, ensemble.height, periodic=periodic)
+
+
 def surface_of_asperities(ensemble: Ensemble, lowest: float, *, periodic: bool) -> Surface:
     """Return the surface that asperities make together, of which the highest counts at each point.
 

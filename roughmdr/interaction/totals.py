@@ -67,6 +67,8 @@ class Step(NamedTuple):
     contacts that overlap."""
     held: float = 0.0
     """Pull-off forces of all other contacts."""
+    area_error: float = 0.0
+    """About that of the area of a grid at given force [m2]."""
 
 
 def total(

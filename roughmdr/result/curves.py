@@ -1,6 +1,6 @@
 """The curves of a result as arrays of xarray, which may be in chunks, and those that follow from others."""
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -103,6 +103,15 @@ def whole(array: "xr.DataArray") -> "xr.DataArray":
 def is_reference(name: str) -> bool:
     """Return whether a curve is of the reference by boundary elements."""
     return name.removesuffix("_mean") in REFERENCE_VARIABLES
+
+
+class Read(NamedTuple):
+    """A curve where it is read."""
+
+    label: str
+    value: "xr.DataArray"
+    rise: "xr.DataArray"
+    """Change between the steps around."""
 
 
 class Branch:

@@ -11,6 +11,7 @@ from roughmdr.result.brackets import find_brackets, interpolate
 from roughmdr.result.curves import (
     PER_AREA,
     Branch,
+    Read,
     alone,
     curve,
     is_reference,
@@ -19,6 +20,7 @@ from roughmdr.result.curves import (
     stored_curves,
     whole,
 )
+from roughmdr.result.grid_errors import grid_errors
 from roughmdr.result.model_errors import errors_there
 from roughmdr.result.view import ResultView
 from roughmdr.schema.arguments import check_values
@@ -60,36 +62,33 @@ def at_value(dataset: "xr.Dataset", name: str, values: ArrayLike, branch: str) -
         output_dtypes=[np.float64],
         dask_gufunc_kwargs={"output_sizes": {_BRACKET: 3}},
     )
-
-    def there(array: "xr.DataArray", *, in_jumps: bool = False) -> "tuple[xr.DataArray, ...]":
-        """Return a curve where the value is reached, its interpolation error, and its change over that step."""
-        found: tuple[xr.DataArray, ...] = xr.apply_ufunc(
+    found, read = dict[str, xr.DataArray](), dict[str, Read]()
+    curves = {name: reached} | _curves(result, name)
+    for label, array in curves.items():
+        value, error, rise = xr.apply_ufunc(
             interpolate,
             array,
             reached,
             path,
             brackets,
-            kwargs={"branch": on, "in_jumps": in_jumps},
+            kwargs={"branch": on, "in_jumps": label.removesuffix("_mean") in _IN_JUMPS},
             input_core_dims=[["step"], ["step"], ["step"], [name, _BRACKET]],
             output_core_dims=[[name]] * 3,
             keep_attrs=False,
             dask="parallelized",
             output_dtypes=[np.float64] * 3,
         )
-        return found
-
-    found: dict[str, xr.DataArray] = {}
-    curves, changes = _curves(result, name), {name: there(reached)[2]}
-    for label, array in curves.items():
-        value, error, changes[label] = there(array, in_jumps=label.removesuffix("_mean") in _IN_JUMPS)
+        read[label.removesuffix("_mean")] = Read(label, value, rise)
+        if label == name:
+            continue
         attrs = {key: array.attrs[key] for key in ("units", "long_name") if key in array.attrs}
         about = {"long_name": f"interpolation error of the {attrs['long_name']}"}
         found[label] = value.assign_attrs(attrs | {"ancillary_variables": f"{label}_interpolation_error"})
         found[f"{label}_interpolation_error"] = error.assign_attrs(attrs | about)
-    here = {**{label: found[label] for label in curves}, name: points.broadcast_like(changes[name])}
-    for label, error in errors_there(result, name, curves | {name: reached}, here, changes).items():
+    for label, error in errors_there(result, name, curves, read).items():
         found[label].attrs["ancillary_variables"] += f" {label}{MODEL_ERROR}"
         found[f"{label}{MODEL_ERROR}"] = error
+    found |= grid_errors(read, name)
     coordinate = (name, points.values, {"units": units, "long_name": LAW_VARIABLES[name].long_name})
     points_found = xr.Dataset(found, attrs=_attributes(dataset, name, branch)).assign_coords({name: coordinate})
     return points_found if np.ndim(wanted) else points_found.isel({name: 0})

@@ -12,6 +12,7 @@ import numpy as np
 from roughmdr.model_error.at_force import QUANTITIES, interaction_along, relative_at_force
 from roughmdr.model_error.parts import PARTS
 from roughmdr.numerics.arguments import Floats
+from roughmdr.result.curves import Read
 from roughmdr.result.view import Leg, ResultView
 from roughmdr.storage.labelled import Array
 from roughmdr.variables import LATERAL, LAW_VARIABLES, MODEL_ERROR, ORIGINS, SEPARATION, WITH_MODEL_ERROR
@@ -99,27 +100,24 @@ def errors_there(
     result: ResultView,
     given: str,
     curves: "Mapping[str, xr.DataArray]",
-    there: "Mapping[str, xr.DataArray]",
-    changes: "Mapping[str, xr.DataArray]",
+    read: Mapping[str, Read],
 ) -> "dict[str, xr.DataArray]":
-    """Return the errors of curves where a quantity is ``given``, from what they are ``there`` and over that step."""
+    """Return the errors of curves that are ``read`` where a quantity is ``given``."""
     import xarray as xr
 
     labels = known_in(result, curves)
     if not labels:
         return {}
-    dataset, found = result.dataset, {_bare(label): there[label] for label in curves}
-    names = [_bare(label) for label in labels]
-    unknown = np.nan * found[names[0]]
+    dataset, names = result.dataset, [_bare(label) for label in labels]
+    unknown = np.nan * read[names[0]].value
     largest = abs(curves[labels[names.index(_first(FORCES, names))]]).max("step")
     numbers = (dataset.get(name, np.nan * dataset["interaction_error"]) for name in _NUMBERS)
     errors = xr.apply_ufunc(
         errors_at,
-        found.get("contact_fraction", unknown),
-        found.get(_STATED, unknown),
+        *(read[name].value if name in read else unknown for name in ("contact_fraction", _STATED)),
         largest,
-        *(there[label] for label in labels),
-        *(changes[label] for label in labels),
+        *(read[name].value for name in names),
+        *(read[name].rise for name in names),
         *numbers,
         kwargs={"names": names, "given": given, "adheres": adheres(result)},
         output_core_dims=[[]] * len(labels),

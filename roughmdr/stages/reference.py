@@ -21,7 +21,8 @@ if TYPE_CHECKING:
     from roughmdr.numerics.arguments import Floats
 
 _ERRORS = 1e-3, 0.5
-_ALWAYS = ("reference_force", "reference_error")
+_ALWAYS = ("reference_force", "reference_error", "reference_area_error")
+_AREAS = "reference_contact_area", "reference_contact_fraction"
 _STEP, _POINT = 5e-3, 3e-6
 """Seconds of a separation, and of a point there on all its grids."""
 _ALONE, _BYTES = 4.0, 160
@@ -110,20 +111,19 @@ class Reference(Stage):
     def _beside(self, law: "LoadSeparation", scene: Given, separation: "Floats", drawn: Drawn) -> "LoadSeparation":
         """Return the law of a realisation with the variables of its reference; NaN where that has no equilibrium."""
         from roughmdr.elements.refine import errors, solve_to_error
-        from roughmdr.elements.surface import surface_of_asperities, surface_of_map
+        from roughmdr.elements.surface import surface_of
 
         ensemble = drawn.ensemble
         height_map = scene.asperities.height_map(scene.seed, drawn.realization)
-        if height_map is None:
-            surface = surface_of_asperities(ensemble, float(separation.min()), periodic=scene.repeats)
-        else:
-            surface = surface_of_map(height_map, ensemble.height, periodic=scene.repeats)
+        surface = surface_of(ensemble, height_map, float(separation.min()), periodic=scene.repeats)
         stiffness = not {"stiffness", RADIUS}.isdisjoint(of_contacts(law.variables))
         found = solve_to_error(surface, separation, scene.effective_modulus, self.error, stiffness=stiffness)
-        numbers = [(step.force, step.area, step.contacts, step.stiffness, step.error) for step in found.steps]
-        force, area, count, slope, error = np.array(numbers).T
-        solved = np.isfinite(error)
-        relative = np.divide(error, force, out=np.where(error > 0.0, 1.0, 0.0), where=(force > 0.0) & solved)
+        numbers = [
+            (step.force, step.area, step.contacts, step.stiffness, step.error, step.area_error) for step in found.steps
+        ]
+        force, area, count, slope, error, area_error = np.array(numbers).T
+        solved, missed = np.isfinite(error), np.where(error > 0.0, 1.0, 0.0)
+        loaded = (force > 0.0) & solved
         patch, radius = ensemble.nominal_area or math.nan, 0.5 * slope / scene.effective_modulus
         conduction = scene.stage(Conduction)
         conductances = {} if conduction is None else conduction.conductances(radius)
@@ -136,7 +136,8 @@ class Reference(Stage):
             "reference_contact_fraction": area / patch,
             "reference_conductance_radius": radius,
             **{f"reference_{name}": value for name, value in conductances.items()},
-            "reference_error": np.minimum(relative, 1.0),
+            "reference_error": np.divide(error, force, out=missed.copy(), where=loaded).clip(max=1.0),
+            "reference_area_error": np.divide(area_error, area, out=missed.copy(), where=loaded).clip(max=1.0),
         }
         beside = {name: np.where(solved, values[name], math.nan) for name in self.more_variables(list(law.variables))}
         remarks = _remarks(float(errors(found).max()), self.error, found.shape, int(np.sum(~solved)))
@@ -166,12 +167,16 @@ class Reference(Stage):
             return
         weight = np.where(largest > 0.0, np.maximum(reference, LIGHT * largest), 1.0)
         own = float(np.nanmax(error * reference / weight))
+        area = ""
+        if result.holds("reference_area_error") and any(map(result.holds, _AREAS)):
+            of_area = result.mean("reference_area_error")[0][told]
+            area = f" (area at given force: {_percent(of_area.min())} to {_percent(of_area.max())} %)"
         off = force[told] / reference[told] - 1.0
         least, most, rms = _percent(off.min(), "+"), _percent(off.max(), "+"), _percent(np.sqrt(np.mean(off * off)))
         yield (
             cls.key,
-            f"boundary elements on up to {points:.0f} points, right to about {_percent(own)} %: the mean force of the "
-            f"law differs from theirs by {least} to {most} %, {rms} % r.m.s., where theirs is above "
+            f"boundary elements on up to {points:.0f} points, right to about {_percent(own)} %{area}: the mean force "
+            f"of the law differs from theirs by {least} to {most} %, {rms} % r.m.s., where theirs is above "
             f"{100.0 * LIGHT:g} % of the largest",
         )
 

@@ -82,6 +82,10 @@ def test_variables_beside_those_that_are_asked_for() -> None:
     for name in ("reference_force", "reference_pressure", "reference_contact_fraction", "reference_error"):
         np.testing.assert_allclose(found[f"{name}_mean"], curves[name].mean("realization"), rtol=1e-12)
     assert "reference_stiffness" not in curves
+    there = found.roughmdr.at_pressure("2 kPa", reference=True)
+    stated = there.reference_area_error_mean * there.reference_contact_fraction_mean
+    np.testing.assert_allclose(there.reference_contact_fraction_mean_error, stated, rtol=1e-12)
+    assert 0.0 < float(there.reference_separation_error) < 1e-8
     np.testing.assert_allclose(curves["reference_pressure"], curves["reference_force"] / 1e-8, rtol=1e-12)
 
 
@@ -138,6 +142,63 @@ def test_what_is_pressed_beyond_the_border_of_a_map_is_said(
         assert "pressed" not in rm.run(mean_field).attrs["map"]
 
 
+def test_errors_by_the_grid_are_those_at_what_is_given(result: xr.Dataset) -> None:
+    """At given separation all share the error of the force; at given force the area has its own, the stiffness half."""
+    last = result.isel(step=[-1])
+    of_force = last.reference_error * last.reference_force
+    there = result.roughmdr.at_separation(last.separation.values)
+    names = ("reference_force", "reference_contact_area", "reference_stiffness")
+    for name in names:
+        assert there[f"{name}_error"].attrs["units"] == result[name].attrs["units"]
+        np.testing.assert_allclose(there[name].values, last[name].values, rtol=1e-12)
+    np.testing.assert_allclose(there.reference_force_error.values, of_force.values, rtol=1e-12)
+    assert "reference_separation_error" not in there
+
+    own = (last.reference_area_error * last.reference_contact_area).values
+    before = result.isel(step=[-2])
+    per_force = (last.reference_contact_area - before.reference_contact_area.values) / (
+        last.reference_force - before.reference_force.values
+    )
+    expected = np.hypot(own, per_force * of_force)
+    np.testing.assert_allclose(there.reference_contact_area_error.values, expected.values, rtol=1e-9)
+
+    at = result.roughmdr.at_force(last.reference_force.values[:, 0], reference=True)
+    for run in (0, 1):
+        one = at.isel(realization=run, reference_force=run)
+        assert float(one.reference_contact_area_error) == pytest.approx(own[run, 0], rel=1e-9)
+        half = 0.5 * float(last.reference_area_error[run, 0] * last.reference_stiffness[run, 0])
+        assert float(one.reference_stiffness_error) == pytest.approx(half, rel=1e-9)
+        assert one.reference_separation_error.attrs["units"] == "m"
+        shift = float(of_force[run, 0] / last.reference_stiffness[run, 0])
+        assert shift < float(one.reference_separation_error) < 2.5 * shift  # the chord is less steep than the law
+    by_asperities = result.roughmdr.at_force(last.force.values[0])
+    np.testing.assert_allclose(
+        by_asperities.reference_contact_area_error.values[0], there.reference_contact_area_error.values[0], rtol=1e-9
+    )
+    fraction = result.roughmdr.at_contact_fraction(0.02, reference=True)
+    assert (fraction.reference_contact_area_error == 0.0).all()
+    assert (fraction.reference_force_error > 0.0).all()
+
+
+@pytest.mark.large
+def test_a_coarse_area_and_stiffness_are_within_their_errors_of_a_fine_one() -> None:
+    coarse, fine = (
+        rm.run(
+            of_spectrum(reference={**ELEMENTS, "error": each}, path={"separation": {"stop": "1.2 sigma", "steps": 9}})
+        )
+        for each in (0.2, 0.002)
+    )
+    force = np.array([0.2, 0.5, 0.9]) * float(fine.reference_force.max("step").min())
+    for one, other in (
+        [each.roughmdr.at_force(force, reference=True) for each in (coarse, fine)],
+        [each.roughmdr.at_separation(fine.separation.values[5:]) for each in (coarse, fine)],
+    ):
+        for name in ("reference_contact_area", "reference_stiffness"):
+            stated = one[f"{name}_error"] + other[f"{name}_error"]
+            slack = one[f"{name}_interpolation_error"] + other[f"{name}_interpolation_error"]
+            assert (abs(one[name] - other[name]) <= stated + slack).all()
+
+
 def test_the_reference_does_not_change_the_law(result: xr.Dataset) -> None:
     without = rm.run(of_spectrum(reference=None))
     np.testing.assert_array_equal(result["force"], without["force"])
@@ -147,7 +208,7 @@ def test_the_reference_does_not_change_the_law(result: xr.Dataset) -> None:
 
 def test_the_same_bits_for_any_workers(result: xr.Dataset) -> None:
     again = rm.run(of_spectrum(), workers=1)
-    for name in ("reference_force", "reference_contact_area", "reference_stiffness", "reference_error"):
+    for name in ("reference_force", "reference_contact_area", "reference_stiffness", "reference_area_error"):
         np.testing.assert_array_equal(again[name], result[name])
 
 
@@ -215,6 +276,7 @@ def test_commands_tell_and_draw_it(tmp_path: Path) -> None:
     assert "few and small contacts need finer grids: in all up to about" in planned
     ran = command("run", str(file), "-o", str(out), "--quiet") + command("info", str(out))
     assert "reference    boundary elements on up to" in ran
+    assert re.search(r"right to about \S+ % \(area at given force: \S+ to \S+ %\): the mean force of the law", ran)
     assert "advice       believe boundary elements, which press the map itself; the asperities are right" in ran
     assert re.search(r"pressure     \S+ kPa, \S+ kPa by boundary elements, on average in the contacts", ran)
     assert "reference    drawn" in command("plot", str(out), "-o", str(picture), "--with-reference")

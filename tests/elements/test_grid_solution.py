@@ -5,6 +5,10 @@ from typing import Any
 
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from hypothesis.extra.numpy import array_shapes, arrays
+from numpy.typing import NDArray
 from oracles.boundary_elements import HeightMap
 from scenes import scene
 
@@ -108,7 +112,7 @@ def test_without_overlap_there_is_no_force_and_later_the_start_is_as_good() -> N
     height = paraboloid(8.0, 64)
     grid = BoundaryElements(height, np.array([8.0, 8.0]))
     assert grid.press(0.5) == 0.0
-    assert grid.patches() == (0, 0.0, 0.0)
+    assert grid.patches() == (0, 0.0, 0.0, 0.0)
     assert grid.stiffness(0.5) == 0.0
     for h in (-0.02, -0.05, -0.2, -0.3, -1.0):  # of one cell, which is at rest at once, from the first on
         assert grid.press(h) == pytest.approx(BoundaryElements(height, grid.sides).press(h), rel=1e-5)
@@ -197,3 +201,45 @@ def test_a_run_says_which_grid_it_used() -> None:
 def test_a_free_patch_has_no_grid() -> None:
     with pytest.raises(rm.SceneError, match='does not go with boundary = "free": the grid repeats'):
         rm.load_separation(crowded(), separation=1e-6, effective_modulus=1e6, interaction={**GRID, "boundary": "free"})
+
+
+@given(
+    arrays(bool, array_shapes(min_dims=2, max_dims=2, min_side=2, max_side=9)),
+    st.sampled_from([1e-18, 1.0, 1e6]),
+)
+@settings(deadline=None)
+def test_the_error_of_the_area_is_of_the_sides_at_the_edges(loaded: NDArray[np.bool_], unit: float) -> None:
+    """Twice as many edges have at most twice the error, and at least that of sides which err each on its own."""
+    grid = BoundaryElements(np.zeros(loaded.shape), unit * np.array(loaded.shape, dtype=float))
+    grid.pressure = np.where(loaded, 1.0, 0.0)
+    one = grid.patches()
+    two = BoundaryElements(np.zeros((2 * loaded.shape[0], loaded.shape[1])), grid.sides * np.array([2.0, 1.0]))
+    two.pressure = np.tile(grid.pressure, (2, 1))
+    both = two.patches()
+    assert both.area == pytest.approx(2.0 * one.area, rel=1e-12)
+    assert 1.41 * one.area_error <= both.area_error <= 2.0 * one.area_error
+    assert (one.area_error == 0.0) == (loaded.all() or not loaded.any())
+    turned = BoundaryElements(np.zeros(loaded.T.shape), grid.sides[::-1])
+    turned.pressure = grid.pressure.T
+    assert turned.patches().area_error == pytest.approx(one.area_error, rel=1e-12)
+
+
+@pytest.mark.parametrize("unit", [1e-9, 1e3])
+def test_nearly_all_hertzian_areas_and_stiffnesses_are_within_their_errors(unit: float) -> None:
+    """At given force, of paraboloids of 2 to 12 cells in radius, alone and anywhere between the points."""
+    rng, within = np.random.default_rng(5), list[tuple[bool, bool]]()
+    for points in np.linspace(32, 72, 40).astype(int).tolist():
+        cell, depth = 4.0 / points, rng.uniform(0.02, 0.5)
+        x, y = ((np.arange(points) + 0.5 - shift) * cell - 2.0 for shift in rng.uniform(size=2))
+        height = -0.5 * (x[:, None] ** 2 + y**2) * unit
+        grid = BoundaryElements(height, unit * np.array([4.0, 4.0]), periodic=False)
+        force = grid.press(-depth * unit) / unit**2
+        found, radius = grid.patches(), (0.75 * force) ** (1.0 / 3.0)
+        stated = found.area_error / found.area
+        off = (
+            found.area / unit**2 / (math.pi * radius**2) - 1.0,
+            grid.stiffness(-depth * unit) / unit / (2 * radius) - 1,
+        )
+        within.append((abs(off[0]) <= stated, abs(off[1]) <= 0.5 * stated))
+        assert stated < 0.45
+    assert (np.mean(within, axis=0) >= 0.9).all()

@@ -5,7 +5,9 @@ from typing import Any
 
 import numpy as np
 import pytest
+import xarray as xr
 from forms import large
+from studies.hills.grids import SURFACES, measure_case, report_grids
 from studies.hills.maps import ANISOTROPIC, ISOTROPIC, separations, square
 from studies.hills.maps import SIDE as SIDE_OF_CASES
 
@@ -183,3 +185,17 @@ def test_the_stated_error_covers_nearly_all_errors_on_maps() -> None:
             force, stated = np.array([(step.force, step.error) for step in found.steps]).T
             within.append(np.abs(force - true) <= stated)
     assert np.mean(within) > 0.9
+
+
+@pytest.mark.large
+@pytest.mark.filterwarnings("ignore::roughmdr.LimitWarning")
+def test_errors_at_given_separation_and_force_hold_against_finer_grids() -> None:
+    """Coarse grids of two surfaces; nearly all errors of the part of the study that is this."""
+    parts = [measure_case(surface, "periodic", 0.2, 1) for surface in (SURFACES[0], SURFACES[2])]
+    numbers = xr.concat(parts, "grid_read")
+    assert len(numbers) == 5
+    for name in numbers:
+        true, stated = numbers[name].to_numpy()
+        assert np.mean(true <= stated) > 0.85
+        assert np.median(stated) < 0.4
+    assert "| force at given separation |" in report_grids(numbers.assign(references=len(parts)))
