@@ -59,6 +59,8 @@ class CellTable(TypedDict):
     parts: dict[str, float]  # of the model error, by their names in results
     largest_contact_fraction: float
     effective_contacts: float  # that carry the load at closest approach
+    sampling_error: float  # of the force there, from patch to patch
+    area_sampling_error: float  # of the contact area at the same force
     trusted_separation: float  # [m]
     numerical_error: float
     run_time: float  # [s], of all realisations
@@ -89,7 +91,7 @@ class ResultTable(TypedDict):
     lattice: list[str]  # that the asperities fill, with its pitch and patch
     map: list[str]
     trust: dict[str, str | None]  # "contact", "model_error", "trust": in words
-    sample: str | None  # where few contacts carry the load
+    sample: str | None  # how far one stands for others
     advice: str | None
     reference: str | None  # other sections that tell something of a result have a key of their own
     accuracy: str | None
@@ -119,6 +121,8 @@ class ForeseenTable(TypedDict):
     parts: dict[str, float]
     largest_contact_fraction: float
     effective_contacts: float  # that carry the load at closest approach
+    sampling_error: float  # of the force there, from patch to patch
+    area_sampling_error: float  # of the contact area at the same force
     contact_fraction_at_pull_off: float
     trusted_separation: float  # [m]
 
@@ -147,7 +151,7 @@ class PlanTable(TypedDict):
     lattice: list[str]  # that the asperities fill, with its pitch and patch
     map: list[str]
     trust: dict[str, str | None]
-    sample: str | None  # where few contacts carry the load
+    sample: str | None  # how far one stands for others
     advice: str | None
     warnings: list[str]
     failures: list[str]  # which of the cells that were tried cannot be computed, and why
