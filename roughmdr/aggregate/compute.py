@@ -83,8 +83,8 @@ def compute(problem: Problem, path: LoadingPath, variables: Iterable[str]) -> Lo
     crowded = crowd_warnings(assumptions.neighbours_error, total[totals.AREA] / area)
     warnings = (*ensemble.warnings, *([_UNCOUPLED_HILLS] if ensemble.origin == "hills" else []), *crowded)
     pull_off = pull_off_of(problem, path, total[totals.FORCE])
-    lowered = 1.0 - coupling * float(total[totals.STIFFNESS, np.argmin(path.separation)]) if coupling else 1.0
-    return result._replace(warnings=warnings, pull_off=pull_off, **sample_of(ensemble, force, radius, lowered))
+    factor = 1.0 - coupling * float(total[totals.STIFFNESS, np.argmin(path.separation)]) if coupling else 1.0
+    return result._replace(warnings=warnings, pull_off=pull_off, **sample_of(ensemble, force, radius, factor))
 
 
 def _overlap(ensemble: Ensemble, radius: Floats) -> float:

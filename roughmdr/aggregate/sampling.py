@@ -20,15 +20,16 @@ _WAVES = np.arange(-12.0, 13.0)
 """Waves along a side that are taken to make up the forces of blocks; shorter ones are 8 % of these."""
 
 
-def sample_of(ensemble: Ensemble, force: Floats, radius: Floats, lowered: float = 1.0) -> dict[str, Any]:
+def sample_of(ensemble: Ensemble, force: Floats, radius: Floats, factor: float = 1.0) -> dict[str, Any]:
     """Return the effective number of contacts and the sampling errors of force and area, ``SAMPLE`` by their names [1].
 
-    ``force`` [N] and ``radius`` [m] are those of all asperities; ``lowered`` is the factor by which the force scatters
-    less, or more, than its parts tell. Parts are 4 x 4 blocks of the patch where positions are known: long waves and
-    clusters count. Else they are the contacts: as many as chance has it (N. R. Campbell, Proc. Camb. Phil. Soc. 15
-    (1909) 117), or some of N asperities. At the same force the area differs, to first order, by the sum of what parts
-    have above their shares by force (W. G. Cochran, Sampling Techniques, Wiley 1977, chapter 6); n contacts tell its
-    variance too small by 1 - 1/n. NaN where no contact bears a force, or none tells; for the area also where one pulls.
+    ``force`` [N] and ``radius`` [m] are those of all asperities; ``factor`` is the scatter of their sum over that which
+    its parts tell. Parts are 4 x 4 blocks of the patch where positions are known: long waves and clusters count. Else
+    they are the contacts: as many as chance has it (N. R. Campbell, Proc. Camb. Phil. Soc. 15 (1909) 117), or some of N
+    asperities. At the same force the area differs, to first order, by the sum of what parts have above their shares by
+    force (W. G. Cochran, Sampling Techniques, Wiley 1977, chapter 6), of which n contacts tell the variance too small
+    by 1 - 1/n. NaN where no contact bears a force, or one asperity is all there is; for the area also where one contact
+    pulls, or bears all.
     """
     number, count, sides = effective_number(force), force.size, sides_of(ensemble)
     fixed = ensemble.origin == "asperities" and (not ensemble.goes_on or "patch_x" in ensemble.attrs)  # or a lattice
@@ -47,7 +48,7 @@ def sample_of(ensemble: Ensemble, force: Floats, radius: Floats, lowered: float 
         load, own, fixed, count = _blocks(at, load), _blocks(at, own), True, _HALVES**2
         weight = 0.25 * _BLOCKS**2 / (_BLOCKS**2 - 1)
     variance = float(load @ load) - (float(load.sum()) ** 2 / count if fixed else 0.0)
-    found["sampling_error"] = lowered * math.sqrt(weight * max(variance, 0.0))
+    found["sampling_error"] = factor * math.sqrt(weight * max(variance, 0.0))
     if tells:
         found["area_sampling_error"] = math.sqrt(number / (number - 1.0) * weight * float(own @ own))
     return found
@@ -64,8 +65,8 @@ def evening(ensemble: Ensemble, radius: Floats) -> float:
     """Return how much less blocks scatter because contacts of these radii [m] are coupled on a patch that repeats [1].
 
     A force that varies with the wave number k is lower by 1 + 4 sum of a/(A k): contacts have the stiffness 2 E* a, the
-    half-space the compliance 2/(E* k) (K. L. Johnson, Contact Mechanics, Cambridge 1985, section 13.2). Blocks feel all
-    waves alike. The force of the patch, k = 0, is not lower: separations are from the deformed mean plane.
+    half-space the compliance 2/(E* k) (K. L. Johnson, Contact Mechanics, Cambridge 1985, section 13.2). All waves count
+    as equally strong. The force of the patch, k = 0, is not lower: separations are from the deformed mean plane.
     """
     x, y = sides_of(ensemble) or (1.0, 1.0)
     strength = np.outer(np.sinc(_WAVES / _BLOCKS) ** 2, np.sinc(_WAVES / _BLOCKS) ** 2)

@@ -9,6 +9,7 @@ import pytest
 import xarray as xr
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from studies.trust.samples import clusters
 
 import roughmdr as rm
 from roughmdr.aggregate.sampling import evening, sample_of
@@ -122,18 +123,6 @@ def test_contacts_that_are_few_or_small_do_not_even_out() -> None:
     assert found[2] == pytest.approx(2.0 * found[1], rel=1e-3)
 
 
-def patches(clusters: float, each: float, width: float, seed: int) -> xr.Dataset:
-    """Return a patch of side 1 cut out of a surface with clusters of asperities, which is without end."""
-    draws, margin = np.random.default_rng(seed), 5.0 * width
-    middles = draws.uniform(-margin, 1.0 + margin, (2, draws.poisson(clusters * (1.0 + 2.0 * margin) ** 2)))
-    at = np.repeat(middles, draws.poisson(each, middles.shape[1]), axis=1)
-    x, y = at + draws.normal(0.0, width, at.shape)
-    on = (x > 0.0) & (x < 1.0) & (y > 0.0) & (y < 1.0)
-    columns = {"x": x[on], "y": y[on], "height": draws.normal(0.0, 1e-3, on.sum()), "radius": np.full(on.sum(), 0.01)}
-    found = {name: ("asperity", values, {"units": "m"}) for name, values in columns.items()}
-    return xr.Dataset(found, attrs={"shape": "paraboloid", "patch": 1.0})
-
-
 def pressed(ensemble: xr.Dataset, h: float) -> Floats:
     """Return force, sampling error and effective number of contacts."""
     law = rm.load_separation(ensemble, separation=[h], effective_modulus=1.0)
@@ -141,7 +130,7 @@ def pressed(ensemble: xr.Dataset, h: float) -> Floats:
 
 
 def test_of_patches_with_clusters_it_is_the_scatter_which_the_number_of_contacts_misses() -> None:
-    found = [pressed(patches(60.0, 10.0, 0.03, seed), 0.0) for seed in range(80)]
+    found = [pressed(clusters(0.03, seed), 0.0) for seed in range(80)]
     force, error, number = np.transpose(found)
     true = np.std(force, ddof=1) / np.mean(force)  # known to 8 %
     assert np.median(error) == pytest.approx(true, rel=0.25)
