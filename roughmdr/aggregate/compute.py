@@ -7,11 +7,12 @@ import numpy as np
 
 from roughmdr.aggregate import loop, totals
 from roughmdr.aggregate.detachment import detachments
-from roughmdr.aggregate.law import LoadSeparation, effective_number
+from roughmdr.aggregate.law import LoadSeparation
 from roughmdr.aggregate.loop import sum_over_asperities
 from roughmdr.aggregate.mean_field import couple, coupling_in, of_independent, shift
 from roughmdr.aggregate.neighbours_error import are_few, neighbours_error
 from roughmdr.aggregate.problem import Problem
+from roughmdr.aggregate.sampling import sample_of
 from roughmdr.aggregate.tabor import jkr_validity
 from roughmdr.aggregate.totals import AREA, COUNT, FORCE
 from roughmdr.ensemble.ensemble import Ensemble
@@ -82,7 +83,8 @@ def compute(problem: Problem, path: LoadingPath, variables: Iterable[str]) -> Lo
     crowded = crowd_warnings(assumptions.neighbours_error, total[totals.AREA] / area)
     warnings = (*ensemble.warnings, *([_UNCOUPLED_HILLS] if ensemble.origin == "hills" else []), *crowded)
     pull_off = pull_off_of(problem, path, total[totals.FORCE])
-    return result._replace(warnings=warnings, pull_off=pull_off, effective_contacts=effective_number(force))
+    factor = 1.0 - coupling * float(total[totals.STIFFNESS, np.argmin(path.separation)]) if coupling else 1.0
+    return result._replace(warnings=warnings, pull_off=pull_off, **sample_of(ensemble, force, radius, factor))
 
 
 def _overlap(ensemble: Ensemble, radius: Floats) -> float:

@@ -8,8 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roughmdr.aggregate import totals
-from roughmdr.aggregate.law import LoadSeparation, effective_number
+from roughmdr.aggregate.law import LoadSeparation
 from roughmdr.aggregate.problem import Problem
+from roughmdr.aggregate.sampling import evening, sample_of
 from roughmdr.ensemble.ensemble import Ensemble
 from roughmdr.errors import SceneError
 from roughmdr.interaction.settings import Interaction
@@ -123,12 +124,14 @@ def _law(problem: Problem, found: CoupledTotals, separation: Floats, names: list
             avalanche_count=float(len(found.avalanches)),
             avalanche_size_max=float(max(found.avalanches, default=0)),
         )
+    repeats = problem.interaction is not None and problem.interaction.boundary == "periodic"
+    sample = sample_of(ensemble, found.force, found.radius, evening(ensemble, found.radius) if repeats else 1.0)
     return result._replace(
         warnings=(*ensemble.warnings, *found.warnings),
         overlap_count=float(found.overlap_count),
         marked_steps=float(found.marked),
         grid_points=float(found.grid_points),
-        effective_contacts=effective_number(found.force),
+        **sample,
     )
 
 

@@ -62,6 +62,10 @@ class LoadSeparation(NamedTuple):
     effective_contacts: float = math.nan
     """``effective_number`` of the contacts where the flat is closest; NaN where none bears a force, or it is not known.
     """
+    sampling_error: float = math.nan
+    """Relative scatter from patch to patch of the force there, at the same separation; NaN where it is not known."""
+    area_sampling_error: float = math.nan
+    """That of the contact area at the same force."""
 
     @classmethod
     def of(
@@ -106,8 +110,7 @@ def effective_number(force: Floats) -> float:
     """Return the effective number of contacts that carry the load, (sum of |F|)^2 / sum of F^2 [1]; NaN for none.
 
     So many equal contacts have the same sums. Forces of both signs count by their magnitude: pushing and pulling
-    contacts do not cancel. Where contacts are as many as chance has it, the load of a sample scatters by 1/sqrt(n) of
-    the summed magnitudes (N. R. Campbell, Proc. Camb. Phil. Soc. 15 (1909) 117).
+    contacts do not cancel.
     """
     sizes = np.abs(force)
     largest = float(sizes.max(initial=0.0))

@@ -27,6 +27,7 @@ from roughmdr.variables import (
     LAW_VARIABLES,
     PULL_OFF_NUMBERS,
     RUN_VARIABLES,
+    SAMPLE,
 )
 
 if TYPE_CHECKING:
@@ -78,7 +79,9 @@ def load_separation(
         flat off, and force; numerical_error [1];
         model_error [1], what the assumptions of the model cost, with its parts, and the largest contact fraction (NaN
         where there is no nominal area); effective_contacts [1], how many equal contacts would carry the load where the
-        flat is closest; with an unloading pull_off_force [N], pull_off_separation [m],
+        flat is closest, sampling_error [1], how far the force there differs from patch to patch, and
+        area_sampling_error [1], the area at the same force (NaN where that is not known); with an unloading
+        pull_off_force [N], pull_off_separation [m],
         pull_off_contacts [1] and pull_off_contact_area [m2], NaN where it ends in contact; with pairwise interaction
         overlap_count [1], marked_steps [1] and grid_points [1]; with conductance_radius its conductance_error [1].
 
@@ -127,7 +130,7 @@ def load_separation(
     result = simulate(problem, path, path.variables(names))
     data = {name: Array(("step",), values, LAW_VARIABLES[name].attrs) for name, values in result.variables.items()}
     errors = {"numerical_error": result.numerical_error, **result.model_error.named}
-    errors["effective_contacts"] = result.effective_contacts
+    errors |= {name: getattr(result, name) for name in SAMPLE}
     if asperities.nominal_area is not None:
         errors["nominal_area"] = asperities.nominal_area
     if coupling is not None and coupling.model == "pairwise":

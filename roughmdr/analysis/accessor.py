@@ -268,8 +268,8 @@ class Analysis:
         Returns
         -------
         xarray.Dataset
-            ``model_error`` [1] with its parts, ``largest_contact_fraction`` [1] and ``trusted_separation`` [m], NaN
-            where the whole path can be trusted; the attribute ``trust`` says it in words.
+            ``model_error`` with its parts, ``largest_contact_fraction``, both sampling errors (all [1]) and
+            ``trusted_separation`` [m], NaN where the whole path can be trusted; the attribute ``trust`` has words.
 
         Raises
         ------

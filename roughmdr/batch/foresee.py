@@ -28,7 +28,7 @@ class Foreseen(NamedTuple):
     path: LoadingPath
     """Some steps of the path of the cell."""
     law: LoadSeparation
-    """Its contact fraction, pressure and effective number of contacts are those of all asperities."""
+    """Its contact fraction, pressure, effective number of contacts and sampling errors are those of all asperities."""
     fraction_at_pull_off: float
     """NaN where there is none, or no nominal area."""
     cell: int = 0
@@ -127,7 +127,9 @@ def _foreseen(scene: Scene, path: LoadingPath) -> Foreseen:
     law = simulate_ensemble(_coarse(scene.without_grid), path, ensemble, variables)
     area = math.nan if ensemble.nominal_area is None else ensemble.nominal_area
     if source.nominal_area is not None:
-        law = law._replace(effective_contacts=law.effective_contacts * source.nominal_area / area)
+        share = area / source.nominal_area
+        scatter = {name: getattr(law, name) * math.sqrt(share) for name in ("sampling_error", "area_sampling_error")}
+        law = law._replace(effective_contacts=law.effective_contacts / share, **scatter)
     return Foreseen(path, law, law.pull_off.contact_area / area, summits=ensemble.origin == "summits")
 
 

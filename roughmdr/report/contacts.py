@@ -1,7 +1,6 @@
-"""Contacts of a result in words: how few carry the load, their mean pressure, errors of what passes through them."""
+"""Contacts of a result in words: how far one sample stands for others, mean pressure, errors of what passes through."""
 
-import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 
 import numpy as np
 
@@ -9,47 +8,46 @@ from roughmdr.numerics.arguments import Floats
 from roughmdr.result.view import ResultView
 from roughmdr.schema.toml_text import parse_toml
 from roughmdr.schema.units import format_quantity
+from roughmdr.variables import SAMPLE
 
-_FEW = 10.0
-"""Effective number of contacts below which the load of a sample scatters by more than a third of itself."""
+_FEW = 10
+"""Number of asperities below which a scene asks for just these: nothing is said of other samples."""
+_TOLD = 0.01
+"""Sampling error below which nothing is said."""
 
 _SAMPLES = {"surface": "map", "spectrum": "map", "file": "ensemble"}  # words for a sample, by source
 _ELASTIC = "plastic flow is not modelled: above about the hardness of the softer body they yield, and become larger"
 _ERRORS = {"conductance": "conductance_error", "sticking": "tangential_error"}
 
 
-def describe_sample(effective: list[Floats], scene: str) -> str:
-    """Return where few contacts carry the load at closest approach in cells of a scene, as TOML; empty where none do.
+def describe_sample(numbers: Mapping[str, Floats], scene: str) -> str:
+    """Return how far another sample than that of each cell of a scene, as TOML, differs at closest approach.
 
-    ``effective`` are the effective numbers of contacts in the runs of each cell, above 0 where they are known; their
-    median counts. Nothing is said where the scene asks for so few asperities.
+    ``numbers`` are ``SAMPLE`` in the cells, NaN where they are not known. Empty where nothing is of note, and where the
+    scene asks for few asperities.
     """
-    runs = [cell[np.isfinite(cell) & (cell > 0.0)] for cell in effective]
-    known = [float(np.median(cell)) for cell in runs if cell.size]
-    few = [number for number in known if number < _FEW]
-    asperities = parse_toml(scene).get("asperities")
-    if not few or not isinstance(asperities, dict):
-        return ""
+    asperities, errors = parse_toml(scene).get("asperities", {}), numbers["sampling_error"]
     count = asperities.get("count")
-    if isinstance(count, int) and count < _FEW:
+    if not np.fmax.reduce(errors, initial=0.0) >= _TOLD or (isinstance(count, int) and count < _FEW):
         return ""
-    least = min(few)
-    counted = " to ".join(dict.fromkeys(f"{number:.2g}" for number in (least, max(few))))
-    share = f" in {len(few)} of {len(known)} cells" if len(known) > 1 else ""
     sample = _SAMPLES.get(str(asperities.get("source")), "realisation")
-    scatter = f"{'up to ' if len(few) > 1 else ''}about {100.0 / math.sqrt(least):.2g} %"
+    area = numbers["area_sampling_error"]
+    of_area = f", at the same force the contact area by {_from_to(100.0 * area)} %" if np.isfinite(area).any() else ""
     return (
-        f"about {counted} contacts carry the load at closest approach{share}: one {sample} is one sample; at the same "
-        f"separation the load of another differs by {scatter}"
+        f"about {_from_to(numbers['effective_contacts'])} contacts carry the load at closest approach: one {sample} is "
+        f"one sample; at the same separation the load of another differs by about {_from_to(100.0 * errors)} %{of_area}"
     )
 
 
+def _from_to(values: Floats) -> str:
+    return " to ".join(dict.fromkeys(f"{end(values):.2g}" for end in (np.fmin.reduce, np.fmax.reduce)))
+
+
 def sample_of_result(result: ResultView) -> str:
-    """Return that of a result; empty where an earlier version did not store what it takes."""
-    if "effective_contacts" not in result.variables:
+    """Return that of a result with one realisation; empty for one of a version that did not store what it takes."""
+    if result.realizations > 1 or not set(SAMPLE) <= result.variables.keys():
         return ""
-    runs = [np.atleast_1d(result.variables["effective_contacts"].values[cell]) for cell in result.cells]
-    return describe_sample(runs, result.attrs["scene"])
+    return describe_sample({name: result.variables[name].values.ravel() for name in SAMPLE}, result.attrs["scene"])
 
 
 def contact_pressure_lines(result: ResultView) -> Iterator[tuple[str, str]]:

@@ -60,6 +60,8 @@ class CellTable(TypedDict):
     at_given_pressure: dict[str, float]  # largest relative model errors of other variables there, by their names
     largest_contact_fraction: float
     effective_contacts: float  # that carry the load at closest approach
+    sampling_error: float  # of the force there, from patch to patch
+    area_sampling_error: float  # of the contact area at the same force
     trusted_separation: float  # [m]
     numerical_error: float
     run_time: float  # [s], of all realisations
@@ -90,7 +92,7 @@ class ResultTable(TypedDict):
     lattice: list[str]  # that the asperities fill, with its pitch and patch
     map: list[str]
     trust: dict[str, str | None]  # "contact", "model_error", "trust": in words
-    sample: str | None  # where few contacts carry the load
+    sample: str | None  # how far one stands for others
     advice: str | None
     reference: str | None  # other sections that tell something of a result have a key of their own
     accuracy: str | None
@@ -121,6 +123,8 @@ class ForeseenTable(TypedDict):
     at_given_pressure: dict[str, float]
     largest_contact_fraction: float
     effective_contacts: float  # that carry the load at closest approach
+    sampling_error: float  # of the force there, from patch to patch
+    area_sampling_error: float  # of the contact area at the same force
     contact_fraction_at_pull_off: float
     trusted_separation: float  # [m]
 
@@ -149,7 +153,7 @@ class PlanTable(TypedDict):
     lattice: list[str]  # that the asperities fill, with its pitch and patch
     map: list[str]
     trust: dict[str, str | None]
-    sample: str | None  # where few contacts carry the load
+    sample: str | None  # how far one stands for others
     advice: str | None
     warnings: list[str]
     failures: list[str]  # which of the cells that were tried cannot be computed, and why

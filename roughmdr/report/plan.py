@@ -16,7 +16,7 @@ from roughmdr.report.summary import counted, motion_lines
 from roughmdr.result.trust import largest_at_force
 from roughmdr.schema.units import format_quantity
 from roughmdr.schema.wording import format_bytes, format_seconds, format_table, printable, under
-from roughmdr.variables import LATERAL
+from roughmdr.variables import LATERAL, SAMPLE
 
 
 def describe_plan(plan: Plan, estimate: Estimate, prospect: Prospect, workers: int) -> str:
@@ -85,8 +85,11 @@ def _resolution(prospect: Prospect) -> float:
 
 
 def _sample(plan: Plan, prospect: Prospect) -> str:
-    """Return where few contacts carry the load in the cells that were foreseen; empty where none do."""
-    return describe_sample([np.array([cell.law.effective_contacts]) for cell in prospect.foreseen], plan.scene.toml)
+    """Return how far the sample of each cell that was foreseen stands for others; empty for several a cell."""
+    scene, laws = plan.scene, [cell.law for cell in prospect.foreseen]
+    if scene.accuracy is not None or scene.batch.realizations > 1 or scene.estimators == ("expected",):
+        return ""
+    return describe_sample({name: np.array([getattr(law, name) for law in laws]) for name in SAMPLE}, scene.toml)
 
 
 def plan_table(plan: Plan, estimate: Estimate, prospect: Prospect, workers: int) -> PlanTable:
@@ -143,6 +146,8 @@ def _foreseen(plan: Plan, cell: Foreseen) -> ForeseenTable:
         "at_given_pressure": largest_at_force({**error.named, "grid_points": cell.law.grid_points}),
         "largest_contact_fraction": error.largest_fraction,
         "effective_contacts": cell.law.effective_contacts,
+        "sampling_error": cell.law.sampling_error,
+        "area_sampling_error": cell.law.area_sampling_error,
         "contact_fraction_at_pull_off": cell.fraction_at_pull_off,
         "trusted_separation": error.trusted_separation,
     }

@@ -104,6 +104,8 @@ def _cell(result: ResultView, number: int, cell: tuple[int, ...]) -> CellTable:
         ),
         "largest_contact_fraction": largest("largest_contact_fraction"),
         "effective_contacts": float(np.fmin.reduce(values("effective_contacts"))),
+        "sampling_error": largest("sampling_error"),
+        "area_sampling_error": largest("area_sampling_error"),
         "trusted_separation": largest("trusted_separation"),
         "numerical_error": largest("numerical_error"),
         "run_time": float(np.nansum(values("run_time"))),

@@ -19,12 +19,13 @@ from roughmdr.variables import (
     REFERENCE_VARIABLES,
     RUN_DIAGNOSTICS,
     RUN_VARIABLES,
+    SAMPLE,
 )
 
 _COUNTS = ("realization_count", "pull_off_count")
 _CODES = ("adhesion_law", "accuracy_method")
 _KNOWN_TOGETHER = {
-    "largest_contact_fraction": [name for name in RUN_DIAGNOSTICS if name.endswith("_error")],
+    "largest_contact_fraction": [name for name in RUN_DIAGNOSTICS if name.endswith("_error") and name not in SAMPLE],
     "avalanche_count": ["avalanche_size_max"],
     **{name: ["reference_error"] for name in REFERENCE_VARIABLES},
     **{f"{name}_mean": ["reference_error_mean"] for name in REFERENCE_VARIABLES},

@@ -131,6 +131,13 @@ RUN_DIAGNOSTICS = _diagnostics(
         "forces over the sum of the squares",
         merge="fmin",
     ),
+    Diagnostic(
+        "sampling_error",
+        "1",
+        "estimated standard deviation of the force at closest approach from patch to patch of this size, at the same "
+        "separation, over the summed magnitudes of the forces of the contacts",
+    ),
+    Diagnostic("area_sampling_error", "1", "that of the contact area from patch to patch, at the same force"),
     Diagnostic("trusted_separation", "m", "separation below which the error by interaction is above the trusted one"),
     Diagnostic(
         "edge_slope", "1", "largest slope of a profile at the edge of its contact", merge="maximum", unstated=0.0
@@ -168,6 +175,9 @@ RUN_DIAGNOSTICS = _diagnostics(
     ),
 )
 """Diagnostics of a run: from here task results, checkpoints, resumed files and results have them."""
+
+SAMPLE = ("effective_contacts", "sampling_error", "area_sampling_error")
+"""Diagnostics that tell how far one sample of a surface stands for others."""
 
 PULL_OFF_NUMBERS = declare(
     (

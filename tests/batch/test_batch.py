@@ -16,7 +16,7 @@ from roughmdr.model_error import PARTS
 from roughmdr.runner.backend import Backend
 from roughmdr.runner.run import execute
 from roughmdr.scene import read
-from roughmdr.variables import CONDUCTANCES, CURVE_VARIABLES
+from roughmdr.variables import CONDUCTANCES, CURVE_VARIABLES, SAMPLE
 
 
 def assert_same_bits(one: xr.Dataset, other: xr.Dataset) -> None:
@@ -72,7 +72,7 @@ def test_the_contract_of_the_result(base: xr.Dataset) -> None:
         *(f"pull_off_{name}" for name in ("pressure", "contact_fraction")),
         "pull_off_count", "pull_off_force_of_mean", "pull_off_pressure_of_mean", "nominal_area", "run_time",
         "numerical_error", "model_error", *PARTS, "overlap_fraction", "largest_contact_fraction",
-        "asperity_origin", "effective_contacts", "trusted_separation", "edge_slope", "profile_extent", "status",
+        "asperity_origin", *SAMPLE, "trusted_separation", "edge_slope", "profile_extent", "status",
     ]  # fmt: skip
     for name in ("force", "contact_area", "contact_count", "stiffness"):
         assert base[name].dims == ("realization", "step")

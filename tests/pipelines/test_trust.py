@@ -8,6 +8,7 @@ import xarray as xr
 from carried_out import CarriedOut, carried_out
 from oracles.gaussian_maps import gaussian_map
 from studies.trust import STUDY, errors
+from studies.trust.samples import QUICK as SAMPLES
 from studies.trust.scenes import CASES, QUICK
 from studies.trust.truth import Path as FlatPath
 from studies.trust.truth import by_boundary_elements, by_pairs, by_range_of_adhesion, refined
@@ -27,7 +28,7 @@ def studied(tmp_path_factory: pytest.TempPathFactory) -> Iterator[CarriedOut]:
 @pytest.mark.large
 def test_scenes_are_run_compared_drawn_and_reported(studied: CarriedOut) -> None:
     assert studied.result["name"].to_numpy().tolist() == list(QUICK)
-    assert all(f"| {name}" in studied.text for name in QUICK)
+    assert all(f"| {name}" in studied.text for name in (*QUICK, *SAMPLES))
     assert (studied.folder / "trust.png").stat().st_size > 5000
 
 

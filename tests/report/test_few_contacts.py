@@ -1,4 +1,4 @@
-"""Few contacts that carry the load are told: one map or realisation is then one sample."""
+"""One map or realisation is one sample: how far another differs is told, and how many contacts carry the load."""
 
 import json
 import math
@@ -10,13 +10,14 @@ import pytest
 from click.testing import CliRunner
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from numpy.typing import ArrayLike
 from scenes import scene
 
 import roughmdr as rm
 from roughmdr.aggregate.law import effective_number
 from roughmdr.cli import main
 from roughmdr.report.contacts import describe_sample
-from roughmdr.variables import RUN_DIAGNOSTICS
+from roughmdr.variables import RUN_DIAGNOSTICS, SAMPLE
 
 FORCES = st.lists(st.floats(1e-3, 1.0) | st.floats(-1.0, -1e-3), min_size=1, max_size=20)
 
@@ -25,6 +26,10 @@ def few(**changes: Any) -> dict[str, Any]:
     """Few of many asperities touch."""
     path = {"separation": {"start": "3 sigma", "stop": "2.1 sigma", "steps": 5}}
     return scene(**{"adhesion": None, "path": path, "batch": {"realizations": 300}, **changes})
+
+
+def told(effective: ArrayLike, errors: ArrayLike, of_area: ArrayLike, scene: str) -> str:
+    return describe_sample(dict(zip(SAMPLE, map(np.array, (effective, errors, of_area)), strict=True)), scene)
 
 
 @settings(deadline=None)
@@ -42,20 +47,25 @@ def test_the_effective_number_counts_equal_contacts(forces: list[float], copies:
 def test_without_contact_there_is_no_number() -> None:
     assert math.isnan(effective_number(np.zeros(3)))
     assert math.isnan(effective_number(np.zeros(0)))
-    none, some = np.array([0.0, -1.0, np.nan]), np.array([0.0, 4.0, np.nan])
-    assert not describe_sample([none], "[asperities]")
-    words = describe_sample([none, some], "[asperities]")
+    none = np.full(2, math.nan)
+    assert not told(none, none, none, "[asperities]")
+    words = told([math.nan, 4.0], [math.nan, 0.5], none, "[asperities]")
     assert words.startswith("about 4 contacts")
 
 
 def test_it_is_the_scatter_of_realisations() -> None:
-    """The variance of the force over realisations is the mean of its square over the number."""
+    """The variance of the force over realisations is the mean of its square over the number, or of the stated one."""
     result = rm.run(few())
     force, number = result.force.values[:, -1], result.effective_contacts.values
     assert np.isfinite(number).all()
     assert np.median(number) < 10.0
     assert np.var(force) == pytest.approx(np.mean(force**2 / number), rel=0.2)
-    assert "one realisation is one sample" in rm.info(result)
+    assert np.var(force) == pytest.approx(np.mean((force * result.sampling_error.values) ** 2), rel=0.2)
+    assert "sample" not in rm.info(result)  # their standard error says it
+    one = rm.run(few(batch=None))
+    assert "one realisation is one sample" in rm.info(one)
+    assert one.roughmdr.trust().attrs["trust"].count("\nsample ") == 1
+    assert float(one.roughmdr.trust().sampling_error) == one.sampling_error.item()
 
 
 def test_plan_run_and_info_say_it(tmp_path: Path) -> None:
@@ -64,26 +74,28 @@ def test_plan_run_and_info_say_it(tmp_path: Path) -> None:
     table = few(batch=None, seed=2, sweep={"asperities.count": [1000, 100_000]})
     file, out = tmp_path / "few.toml", tmp_path / "few.nc"
     file.write_text(tomli_w.dumps(table))
-    told = []
+    texts = []
     for command in (["plan", str(file)], ["run", str(file), "-o", str(out)], ["info", str(out)]):
         outcome = CliRunner().invoke(main, [*command, "--json"])
         assert outcome.exit_code == 0, outcome.output
         document = json.loads(outcome.stdout)
         whole = document["plan"] or document["result"]
-        told.append(whole["sample"])
-        numbers = [cell["effective_contacts"] for cell in whole["cells"]]
+        texts.append(whole["sample"])
+        numbers, errors, of_area = ([cell[name] for cell in whole["cells"]] for name in SAMPLE)
         assert numbers[1] > 30.0 * numbers[0]
-    assert told[1] == told[2]
-    assert all("contacts carry the load at closest approach in 1 of 2 cells" in text for text in told)
+        assert 0.0 < errors[1] < errors[0] / 5.0
+        assert 0.0 < of_area[1] < errors[1]
+    assert texts[1] == texts[2]
+    assert all("contacts carry the load at closest approach: one realisation" in text for text in texts)
 
 
 def test_nothing_is_said_of_many_contacts_nor_of_few_that_were_asked_for() -> None:
-    toml = "[asperities]\nsource = 'random'\ncount = {}"
-    unknown = np.full(3, math.nan)
-    assert not describe_sample([np.array([9.0, 12.0, 30.0]), unknown], toml.format(500))
-    assert not describe_sample([np.array([1.0])], toml.format(1))
+    toml, unknown = "[asperities]\nsource = 'random'\ncount = {}", [math.nan, math.nan]
+    few_contacts = [math.nan, 4.0], [math.nan, 0.5], unknown
+    assert not told([2e4], [0.007], [0.001], toml.format(50_000))
+    assert not told(*few_contacts, toml.format(4))
     for source, word in (("surface", "map"), ("file", "ensemble"), ("random", "realisation")):
-        text = describe_sample([np.array([4.0]), unknown], f"[asperities]\nsource = '{source}'")
+        text = told(*few_contacts, f"[asperities]\nsource = '{source}'")
         assert f"about 4 contacts carry the load at closest approach: one {word} is" in text
         assert text.endswith("differs by about 50 %")
 
@@ -95,8 +107,8 @@ def test_of_statistics_the_least_is_kept() -> None:
     assert float(statistics.effective_contacts) == float(curves.effective_contacts.min())
 
 
-def test_of_several_cells_the_median_of_each_counts_and_the_fewest_scatter_most() -> None:
-    runs = [np.array([4.0, 5.0, 100.0]), np.array([7.0, np.nan]), np.array([40.0]), np.array([np.nan])]
-    told = describe_sample(runs, 'asperities = { source = "surface" }')
-    assert told.startswith("about 5 to 7 contacts carry the load at closest approach in 2 of 3 cells: one map is one")
-    assert told.endswith("the load of another differs by up to about 45 %")
+def test_of_several_cells_the_range_is_told() -> None:
+    numbers, errors = [5.0, math.nan, 40.0, 7.0], [0.45, math.nan, 0.16, 0.6]
+    text = told(numbers, errors, [0.1, math.nan, 0.05, math.nan], 'asperities = { source = "surface" }')
+    assert text.startswith("about 5 to 40 contacts carry the load at closest approach: one map is one sample")
+    assert text.endswith("differs by about 16 to 60 %, at the same force the contact area by 5 to 10 %")
