@@ -47,6 +47,7 @@ from roughmdr.variables.run import (
     RUN_VARIABLES,
     STATISTICS,
     STATUSES,
+    YIELDING,
     swept_name,
 )
 from roughmdr.variables.variable import Diagnostic, Variable
@@ -99,6 +100,7 @@ __all__ = [
     "TIME",
     "TRAVEL",
     "WITH_MODEL_ERROR",
+    "YIELDING",
     "Attribute",
     "Diagnostic",
     "Variable",
