@@ -56,6 +56,9 @@ def _independent(problem: Problem, separation: Floats) -> tuple[Floats, Floats]:
     """Return force and radius of each asperity at the end of a path, by the sum over that asperity alone."""
     adhesion, height, columns = problem.adhesion, problem.ensemble.height, problem.ensemble.columns
     path = LoadingPath.along(separation, unload=False, adhesive=adhesion.work > 0.0)
+    if separation.size == 1:  # the sum over all has them
+        _, (radius, force), _ = problem.sums(path, {totals.AREA})
+        return force, radius
     force, radius = np.zeros_like(height), np.zeros_like(height)
     rows, shared = {totals.FORCE, totals.RADIUS}, problem.ensemble.shared_profile is not None
     for i in np.flatnonzero(height >= separation.min() - adhesion.range).tolist():

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
@@ -38,6 +39,8 @@ class LoadSeparation(NamedTuple):
     """The adhesion model that was used."""
     warnings: tuple[str, ...] = ()
     """Warnings that concern the ensemble itself."""
+    yielding: Callable[[], dict[str, float]] = dict
+    """Return the diagnostics of contacts above the hardness; none where that is not given."""
     pull_off: PullOff = PullOff()
     """The largest tension of the unloadings."""
     overlap_count: float = math.nan

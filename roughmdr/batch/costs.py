@@ -49,6 +49,7 @@ _JUMP, _JUMP_VISITS, _JUMP_VISITS_PROFILE = 3e-5, 4.0, 24.0
 """Seconds for each contact whose jump on a machine is located, and visits that it takes of each other contact: of
 paraboloids 1.6 to 5.4 (2000 to 7600 contacts), of spheres 23 to 27 (190 to 2700), on each leg."""
 _HEIGHTS = 1000  # asperities that are drawn to tell which share touches
+_YIELDING, _YIELDING_PAIRS = 10, 4.0  # with a hardness, separations more; factor on pairs: 1.9 to 5 (400 asperities)
 _MEAN_FIELD_PASSES = 6  # factor on independent asperities: Newton's method takes all steps at once
 # Seconds of asperities that feel each other in pairs: to begin, each separation of the path (solved once), and each
 # asperity there (``pipelines/study.py coupling``).
@@ -80,14 +81,15 @@ def along_seconds(cell: Cell, estimator: str) -> float:
     adhesion, section, steps = cell.scene.adhesion_model, cell.scene.asperities, cell.controlled.solutions
     if cell.scene.interaction is not None and not cell.scene.needs_positions:
         steps *= _MEAN_FIELD_PASSES
-    steps += sum(stage.more_separations for stage in cell.scene.stages)
+    hard = cell.scene.material.hardness is not None
+    steps += sum(stage.more_separations for stage in cell.scene.stages) + (_YIELDING if hard else 0)
     if estimator == "expected":
         return _expected_seconds(cell.scene, steps)
     begin = _RUN + (_STRATIFY if estimator == "stratified" else 0.0)
     if section.shape_name == "mdr_table" and section.is_random:
         begin += section.expected_count * _FIND_HILL
     if cell.scene.needs_positions:
-        return begin + section.expected_count * _DRAW + paired_seconds(cell)
+        return begin + section.expected_count * _DRAW + paired_seconds(cell) * (_YIELDING_PAIRS if hard else 1.0)
     energetic = adhesion.work > 0.0 and not {"energy", *LOSSES}.isdisjoint(cell.scene.output.variables)
     visit = _visit_seconds(adhesion, section.shape_name)
     visit *= _ENERGETIC if energetic and section.shape_name != "paraboloid" else 1.0

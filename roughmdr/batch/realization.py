@@ -1,10 +1,13 @@
 """One realisation of a cell: its asperities are drawn, or their density taken, and their law is computed."""
 
+from collections.abc import Callable
+from functools import cache
 from typing import Any
 
 import numpy as np
 
-from roughmdr.aggregate import LoadSeparation, Problem, simulate
+from roughmdr.aggregate import LoadingPath, LoadSeparation, Problem, simulate
+from roughmdr.aggregate.yielding import yielding
 from roughmdr.ensemble import Ensemble
 from roughmdr.loading.lateral import LateralPath, Path
 from roughmdr.loading.machine import MachinePath
@@ -12,6 +15,7 @@ from roughmdr.scene import Scene
 from roughmdr.stages.stage import Contacts, Drawn
 
 _NEGLIGIBLE = 1e-16  # mean number of asperities above the highest summit of an expected law
+_MOST_DRAWN = 100_000  # number of asperities that are drawn evenly to tell which contacts of an expected law yield
 
 
 def simulate_ensemble(
@@ -31,7 +35,7 @@ def simulate_ensemble(
         return float(ensemble.height.max(initial=-np.inf))
 
     drawn = None if realization is None else Drawn(ensemble, realization)
-    return _staged(scene, path, variables, Contacts(law, highest, ensemble.nominal_area, drawn))
+    return _staged(scene, path, variables, Contacts(law, highest, ensemble.nominal_area, drawn), lambda: problem)
 
 
 def simulate_realization(
@@ -67,11 +71,31 @@ def _expected(scene: Scene, path: Path, variables: list[str]) -> LoadSeparation:
     def highest() -> float:
         return float(source.extremes(_NEGLIGIBLE / max(source.expected_count, 1.0)).height.max())
 
-    return _staged(scene, path, variables, Contacts(law, highest, source.nominal_area))
+    def drawn() -> Problem:
+        alone = scene.interaction is not None and scene.interaction.boundary == "free"  # a smaller patch sinks less
+        part = source if alone else source.limited_to(_MOST_DRAWN)
+        return Problem(part.ensemble(scene.seed, 0, stratified=True), *given.values())
+
+    return _staged(scene, path, variables, Contacts(law, highest, source.nominal_area), drawn)
 
 
-def _staged(scene: Scene, path: Path, variables: list[str], contacts: Contacts) -> LoadSeparation:
-    """Return the law that the stages of a scene make of that of its contacts."""
+def _staged(
+    scene: Scene, path: Path, variables: list[str], contacts: Contacts, drawn: Callable[[], Problem]
+) -> LoadSeparation:
+    """Return the law that the stages of a scene make of that of its contacts, which are, or are like, those ``drawn``.
+
+    With a hardness it tells which of these yield, once it is asked.
+    """
     for stage in scene.stages:
         contacts = contacts._replace(law=stage.law(scene, contacts))
-    return contacts.law(path, variables).only(variables)
+    law, hardness = contacts.law(path, variables).only(variables), scene.material.hardness
+    if hardness is None:
+        return law
+
+    @cache
+    def found() -> dict[str, float]:
+        separation = path.separation if isinstance(path, LoadingPath) else law.variables["separation"]
+        solved = separation[~np.isnan(next(iter(law.variables.values())))]  # NaN where there is no equilibrium
+        return yielding(drawn(), hardness, float(solved.min(initial=np.inf)))
+
+    return law._replace(yielding=found)

@@ -96,8 +96,9 @@ def prepare_all(plan: Plan, ranges: Iterable[RunRange]) -> None:
         if kind in prepared:
             continue
         prepared.add(kind)
-        if draws:
+        if draws or scene.material.hardness is not None:
             prepare(shape, adhesion, scene.interaction, variables, unload=plan.unloads)
+        if draws:
             continue
         from roughmdr import expected
 
@@ -143,13 +144,13 @@ def _run(runs: RunRange, realization: int, names: Sequence[str]) -> tuple[Floats
     scene, started = runs.cell.scene, time.perf_counter()
     try:
         result = simulate_realization(scene, runs.cell.controlled, realization, list(names), runs.estimator)
+        known = diagnostics_of(result, scene)
     except Exception as error:  # whatever it is, the other runs go on
         values = np.full((len(names), runs.cell.steps), math.nan)
         remark = f"{type(error).__name__}: {error}" if str(error) else type(error).__name__
         row = row_of(run_time=time.perf_counter() - started, status=FAILED, remark=remark)
         return values, KnownMoments.of(np.array(PullOff())), row
     values, pull_off = np.array([result.variables[name] for name in names]), KnownMoments.of(np.array(result.pull_off))
-    known = diagnostics_of(result, scene)
     return values, pull_off, row_of(run_time=time.perf_counter() - started, status=DONE, **known)
 
 
@@ -158,6 +159,7 @@ def diagnostics_of(result: LoadSeparation, scene: Scene) -> dict[str, object]:
     return {
         **{name: value for name, value in result._asdict().items() if name in RUN_DIAGNOSTICS},
         **result.model_error.named,
+        **result.yielding(),
         "edge_slope": result.extremes.slope,
         "profile_extent": result.extremes.extent,
         "tabor_number": result.tabor if result.tabor < math.inf else math.nan,

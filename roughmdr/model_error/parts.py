@@ -17,6 +17,13 @@ TRUSTED_FRACTION = 0.02
 TRUSTED_ERROR = 0.02
 """Error by interaction up to which the force of coupled asperities is called trusted."""
 
+YIELDED_SHARE = 0.02
+"""Share of the load in contacts above the hardness up to which the elastic law is said to hold.
+
+The others bear up to 11 % less than stated, where the Hertzian mean pressure of spheres is the hardness (L. Kogut, I.
+Etsion, J. Appl. Mech. 69 (2002) 657).
+"""
+
 _SLACK = 1.01  # a path that ends at this contact fraction is trusted all along
 
 PARTS = {

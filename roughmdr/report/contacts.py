@@ -55,7 +55,8 @@ def contact_pressure_lines(result: ResultView) -> Iterator[tuple[str, str]]:
     asperities, elements = _range(result, ""), _range(result, "reference_")
     if asperities:
         beside = f", {elements} by boundary elements," if elements else ""
-        yield "pressure", f"{asperities}{beside} on average in the contacts at closest approach; {_ELASTIC}"
+        yields = "hardness tells which of them yield" if "yielded_load_fraction" in result.variables else _ELASTIC
+        yield "pressure", f"{asperities}{beside} on average in the contacts at closest approach; {yields}"
 
 
 def _range(result: ResultView, of: str) -> str:

@@ -63,6 +63,7 @@ class CellTable(TypedDict):
     sampling_error: float  # of the force there, from patch to patch
     area_sampling_error: float  # of the contact area at the same force
     trusted_separation: float  # [m]
+    yielding: dict[str, float]  # diagnostics of contacts above the hardness, by their names in results
     numerical_error: float
     run_time: float  # [s], of all realisations
     accuracy: AccuracyTable | None
@@ -91,7 +92,7 @@ class ResultTable(TypedDict):
     path: list[str]  # which separations "clear" and targets came to
     lattice: list[str]  # that the asperities fill, with its pitch and patch
     map: list[str]
-    trust: dict[str, str | None]  # "contact", "model_error", "trust": in words
+    trust: dict[str, str | None]  # "contact", "model_error", "trust", "hardness": in words
     sample: str | None  # how far one stands for others
     advice: str | None
     reference: str | None  # other sections that tell something of a result have a key of their own
@@ -116,6 +117,7 @@ class ForeseenTable(TypedDict):
     end: float
     pressure: float  # at closest approach [Pa]
     tension: float  # the largest [Pa]
+    yielding: dict[str, float]  # diagnostics of contacts above the hardness, by their names in results
     tabor_number: float
     adhesion: str
     model_error: float
@@ -255,7 +257,7 @@ def paragraphs(lines: Iterable[tuple[str, str]]) -> dict[str, str]:
     }
 
 
-_TRUST = ("contact", "model_error", "trust")
+_TRUST = ("contact", "model_error", "trust", "hardness")
 
 
 def trust_table(lines: Iterable[tuple[str, str]]) -> dict[str, str | None]:

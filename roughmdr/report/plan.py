@@ -16,7 +16,7 @@ from roughmdr.report.summary import counted, motion_lines
 from roughmdr.result.trust import largest_at_force
 from roughmdr.schema.units import format_quantity
 from roughmdr.schema.wording import format_bytes, format_seconds, format_table, printable, under
-from roughmdr.variables import LATERAL, SAMPLE
+from roughmdr.variables import LATERAL, SAMPLE, YIELDING
 
 
 def describe_plan(plan: Plan, estimate: Estimate, prospect: Prospect, workers: int) -> str:
@@ -139,6 +139,7 @@ def _foreseen(plan: Plan, cell: Foreseen) -> ForeseenTable:
         "end": float(separation[-1]),
         "pressure": pressure_at_closest(cell) if has_area else np.nan,
         "tension": largest_tension(cell) if has_area else np.nan,
+        "yielding": dict.fromkeys(YIELDING, np.nan) | cell.law.yielding(),
         "tabor_number": cell.law.tabor,
         "adhesion": cell.law.model,
         "model_error": error.named["model_error"],

@@ -7,8 +7,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from roughmdr.ensemble.maps.plausible import IMPLAUSIBLE
+from roughmdr.result.hardness import hardness_lines
 from roughmdr.result.trust import trust_lines
 from roughmdr.schema.units import format_quantity
+from roughmdr.variables import YIELDING
 
 if TYPE_CHECKING:
     from roughmdr.batch.foresee import Foreseen, Prospect
@@ -65,6 +67,8 @@ def prospect_lines(prospect: "Prospect") -> Iterator[tuple[str, str]]:
         parts = any(not math.isnan(cell.fraction_at_pull_off) for cell in cells)
         how = 'with [interaction] model = "pairwise" it would be found ' if parts else ""
         yield "", f"{how}at about {format_quantity(prospect.coupled_seconds, 's')} a realisation on one core"
+    of_cells = [cell.law.yielding() for cell in cells]
+    yield from hardness_lines({name: [each.get(name, math.nan) for each in of_cells] for name in YIELDING})
 
 
 def pressure_at_closest(cell: "Foreseen") -> float:

@@ -23,7 +23,7 @@ from roughmdr.result.trust import largest_at_force, trust_of_result
 from roughmdr.result.view import ResultView, swept_values
 from roughmdr.stages import STAGES
 from roughmdr.storage.labelled import Array
-from roughmdr.variables import STATUSES
+from roughmdr.variables import RUN_DIAGNOSTICS, STATUSES, YIELDING
 
 
 def result_table(result: ResultView, file: Path | None, elapsed: float | None = None) -> ResultTable:
@@ -107,6 +107,7 @@ def _cell(result: ResultView, number: int, cell: tuple[int, ...]) -> CellTable:
         "sampling_error": largest("sampling_error"),
         "area_sampling_error": largest("area_sampling_error"),
         "trusted_separation": largest("trusted_separation"),
+        "yielding": {name: float(getattr(np, RUN_DIAGNOSTICS[name].merge).reduce(values(name))) for name in YIELDING},
         "numerical_error": largest("numerical_error"),
         "run_time": float(np.nansum(values("run_time"))),
         "accuracy": accuracy,

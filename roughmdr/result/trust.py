@@ -20,11 +20,12 @@ from roughmdr.model_error.interaction import (
 )
 from roughmdr.model_error.parts import PARTS, TRUSTED_ERROR, TRUSTED_FRACTION
 from roughmdr.numerics.arguments import Floats
+from roughmdr.result.hardness import hardness_lines
 from roughmdr.result.view import ResultView
 from roughmdr.schema.units import format_quantity
 from roughmdr.schema.wording import under
 from roughmdr.stages import stages_in
-from roughmdr.variables import LATERAL
+from roughmdr.variables import LATERAL, YIELDING
 
 _TOLD = 0.01  # parts of the model error below this are not mentioned
 _TINY = 1e-6
@@ -125,6 +126,7 @@ def trust_of_result(result: ResultView) -> Iterator[tuple[str, str]]:
         )
     else:
         yield "trust", "not known: the result was computed by a version that did not estimate the error of its model"
+    yield from hardness_lines({name: result.known(name) for name in YIELDING})
 
 
 def largest_at_force(numbers: Numbers) -> dict[str, float]:

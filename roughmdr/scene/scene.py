@@ -109,6 +109,8 @@ class Scene(Sections):
         if coupling is not None and (reason := reason_against_adhesion(coupling, self.adhesion_model)):
             raise mismatch("interaction", reason)
         self._check_stages()
+        if self.material.hardness is not None and self.unlike:
+            raise mismatch("material.hardness", f"tells where elastic contacts under a flat yield, not {self.unlike}")
         if estimator != "sampled" and (reason := self.reason_against(estimator)):
             raise mismatch("batch.estimator", f"cannot be {estimator!r}: {reason}")
         if self.accuracy is not None:

@@ -48,6 +48,7 @@ from roughmdr.variables.run import (
     SAMPLE,
     STATISTICS,
     STATUSES,
+    YIELDING,
     swept_name,
 )
 from roughmdr.variables.variable import Diagnostic, Variable
@@ -101,6 +102,7 @@ __all__ = [
     "TIME",
     "TRAVEL",
     "WITH_MODEL_ERROR",
+    "YIELDING",
     "Attribute",
     "Diagnostic",
     "Variable",

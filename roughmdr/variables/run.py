@@ -37,9 +37,25 @@ def _sticking(scene: Any) -> bool:
     return "tangential_stiffness" in scene.output.variables and scene.path.lateral is None
 
 
+def _hard(scene: Any) -> bool:
+    return scene.material.hardness is not None
+
+
 def _diagnostics(*rows: Diagnostic) -> dict[str, Diagnostic]:
     return {row.name: row for row in rows}
 
+
+YIELDING = {
+    "yielded_contact_fraction": ("1", "share of the contacts with a mean pressure above the hardness, where closest"),
+    "yielded_load_fraction": ("1", "share of the load that these contacts bear, at closest approach"),
+    "elastic_pressure": (
+        "Pa",
+        "pressure to which these bear at most 2 % of the load; none where they never bear more",
+    ),
+    "elastic_separation": ("m", "separation at that pressure"),
+    "plasticity_index": ("1", "plasticity index of Greenwood and Williamson: (E*/hardness) sqrt(sigma/R)"),
+}
+"""Units and meanings of the diagnostics of contacts above the hardness."""
 
 RUN_DIAGNOSTICS = _diagnostics(
     Diagnostic(
@@ -148,6 +164,10 @@ RUN_DIAGNOSTICS = _diagnostics(
         "largest contact radius over the radius where its profile ends",
         merge="maximum",
         unstated=0.0,
+    ),
+    *(
+        Diagnostic(name, *told, merge="fmin" if name == "elastic_pressure" else "fmax", in_result=_hard)
+        for name, told in YIELDING.items()
     ),
     Diagnostic(
         "status", "1", "outcome of the realization", STATUSES, int, merge="maximum", missing=NOT_RUN, unstated=DONE

@@ -43,6 +43,7 @@ LATERAL = {"amplitude": 2e-8, "steps": 6}
 DUGDALE = {"model": "dugdale", "work": 0.02}
 EXPECTED = {"estimator": "expected"}
 FRICTION = {"friction": 0.4}
+HARD = {"modulus": "3 MPa", "poisson": 0.49, "hardness": 2e5}
 
 
 def elastic(**changes: Any) -> dict[str, Any]:
@@ -62,7 +63,7 @@ KINDS: dict[str, dict[str, Any]] = {
     "independent": elastic(asperities=EVERY_KEY, counter={"modulus": 1e7, "poisson": 0.3}),
     "density": elastic(asperities={**{k: v for k, v in FEW.items() if k != "count"}, "density": 3e8}, path=CLEAR),
     "effective": elastic(material={"effective_modulus": 3e6}, path=TO_PRESSURE, accuracy={"relative": 0.5}, batch=None),
-    "jkr": elastic(adhesion={"model": "jkr", "work": 0.02}, path=CLEAR, asperities=VARIED),
+    "jkr": elastic(adhesion={"model": "jkr", "work": 0.02}, path=CLEAR, asperities=VARIED, material=HARD),
     "dugdale": elastic(adhesion={**DUGDALE, "strength": 1e6}, path=CLEAR),
     "range": elastic(adhesion={"model": "auto", "work": 0.02, "range": 2e-8, "error": 0.01}, path=CLEAR),
     "pairwise": elastic(

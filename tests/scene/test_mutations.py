@@ -57,7 +57,7 @@ BASES: dict[str, dict[str, Any]] = {
     },
     "cones": {
         **SCENE,
-        "material": {"effective_modulus": "4 MPa"},
+        "material": {"effective_modulus": "4 MPa", "hardness": "1 MPa"},
         "asperities": {**_DRAWN, "shape": "cone", "slope": 0.1},
         "accuracy": {"relative": 0.1, "max_realizations": 20, "method": "sampled"},
     },
