@@ -155,6 +155,10 @@ def errors_along(result: ResultView) -> dict[str, Array]:
     curves = [values(name) for name in names]
     largest = np.fmax.reduce(np.abs(curves[names.index(_first(FORCES, names))]), axis=-1, keepdims=True)
     changes = [_changes(each, result.legs) for each in curves]
+    if given in FORCES and {"force", "stiffness"} <= {*names}:  # the slope of the law itself, also at a single load
+        stiffness = curves[names.index("stiffness")]
+        for name, change in (("force", stiffness), (_H, np.where(np.isfinite(stiffness), 1.0, np.nan))):
+            changes[names.index(name)] = change
     numbers = [values(name) for name in _NUMBERS]
     options: dict[str, Any] = {"names": names, "given": given, "adheres": adheres(result)}
     errors = errors_at(fraction, values(_STATED), largest, *curves, *changes, *numbers, **options)

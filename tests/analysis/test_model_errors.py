@@ -118,6 +118,9 @@ def test_under_a_given_force_a_result_stores_the_errors_of_what_follows(dead_loa
         share = over_truth(found, name).values - float(under.slope_error[0])
         of_path = over_truth(expected, name).values - float(along.slope_error[0])
         np.testing.assert_allclose(share, of_path, rtol=0.02)
+    single = run(path={"force": ["1 mN"]}, batch={"realizations": 1})  # by the stiffness, as there is no other step
+    among = under.separation_model_error.isel(step=2)
+    np.testing.assert_allclose(single.separation_model_error[:, 0], among, rtol=0.05)
     off = dead_load.separation.isnull()
     assert bool(dead_load.contact_area_model_error.where(~off).notnull().equals(~off & (dead_load.contact_area > -1)))
 
