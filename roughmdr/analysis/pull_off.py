@@ -80,18 +80,13 @@ def _model_error(dataset: "xr.Dataset", force: "xr.DataArray", fraction: "xr.Dat
 
     unknown = np.nan * dataset["interaction_error"]
     over_runs = [dim for dim in unknown.dims if dim == "realization"]
-    origin, grid = (dataset.get(name, unknown).max(over_runs) for name in ("asperity_origin", "grid_points"))
+    names = ("interaction_error", "slope_error", "asperity_origin", "grid_points")
+    numbers = [dataset.get(name, unknown).max(over_runs) for name in names]
     tabor = dataset.get("tabor_number", unknown)
     if "adhesion_law" in dataset:
         tabor = tabor.where(dataset["adhesion_law"] == ADHESION_CODES.index("jkr"))
     relative = xr.apply_ufunc(
-        pull_off_error,
-        fraction,
-        tabor.min(over_runs),
-        origin,
-        np.isfinite(grid),
-        dask="parallelized",
-        output_dtypes=[np.float64],
+        pull_off_error, fraction, tabor.min(over_runs), *numbers, dask="parallelized", output_dtypes=[np.float64]
     )
     about = "estimated error of the pull-off force by the assumptions of the model"
     found: xr.DataArray = (relative * abs(force)).assign_attrs(units="N", long_name=about)

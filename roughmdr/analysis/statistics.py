@@ -82,7 +82,7 @@ def statistics(dataset: "xr.Dataset") -> "xr.Dataset":
     bare = {name: array.reset_coords(drop=True) for name, array in found.items()}
     coordinates = {name: dataset[name].variable for name in kept}
     reduced = xr.Dataset(bare, coords=coordinates, attrs=attrs)
-    if result.control in FORCES:
+    if result.control in FORCES:  # computed at once, also of a dataset in chunks: they are few
         errors = errors_along(ResultView(Labelled.of(reduced)))
         reduced = reduced.assign({name: (array.dims, array.values, array.attrs) for name, array in errors.items()})
     return reduced.set_coords("remark") if "remark" in bare else reduced

@@ -49,9 +49,13 @@ class Method(NamedTuple):
     """Errors of one way to compute a law, against boundary elements (``pipelines/study.py at_pressure``)."""
 
     interaction: Callable[[Floats], Floats]
-    """Return a multiple of I at contact fractions, for results that hold the largest along a path alone."""
+    """Return a multiple of the error by interaction at contact fractions, for results that hold its largest alone."""
     errors: tuple[AtForce, AtForce, AtForce, AtForce]
-    """Errors of area, stiffness, conductance and sum of radii at given force."""
+    """Errors of the quantities ``NAMES`` at given force."""
+
+
+def _constant(fraction: Floats) -> Floats:
+    return np.where(fraction > 0.0, 1.0, 0.0 * fraction)
 
 
 METHODS: dict[tuple[Origin, bool], Method] = {
@@ -73,13 +77,18 @@ METHODS: dict[tuple[Origin, bool], Method] = {
     ),
     ("hills", False): Method(partial(interaction_error, coefficients=HILLS), (AtForce(1.0),) * 4),
     ("hills", True): Method(
-        lambda fraction: np.where(fraction > 0.0, 1.0, 0.0),
-        (AtForce(0.0, 0.08, 0.4), AtForce(1.0), AtForce(1.0, root=0.1), AtForce(0.0, root=3.0)),
+        _constant, (AtForce(1.0, 0.02, 0.4), AtForce(1.0), AtForce(1.0, root=0.1), AtForce(1.0, root=3.0))
     ),
 }
 """Methods by the origin of the asperities, and whether they are coupled in pairs."""
+_ON_GRID = Method(_constant, (AtForce(1.0, 0.02), AtForce(1.0, 0.01), AtForce(1.0, 0.01), AtForce(1.0, 0.02)))
+"""Boundary elements in place of pairs: what flanks of summits cost, and about the error of the grid."""
 
 
+_LEAST_TABOR, _DMT = 1e-9, 1.0 / 3.0
+"""Tabor number below which nothing changes; error of JKR's pull-off force there, where Derjaguin, Muller and Toporov's
+holds, which is 4/3 of it.
+"""
 _RANGE, _RANGE_POWER = 0.123, 1.3
 """Error of the pull-off force of JKR at Tabor number 1, and the power with which it falls: 5 % at 2, 1.2 % at 6 of
 contacts in pairs (``pipelines/study.py versus_adhesive_bem``)."""
@@ -96,15 +105,17 @@ _PULL_OFF: dict[tuple[Origin, bool], Callable[[Floats], Floats]] = {
 
 
 def relative_at_force(
-    interaction: Floats, fraction: Floats, others: Floats, origin: Floats, coupled: NDArray[np.bool_]
+    interaction: Floats, fraction: Floats, others: Floats, origin: Floats, grid: Floats
 ) -> list[Floats]:
     """Return the relative errors [1] of the quantities at given force, at most 1: [...] each.
 
     ``interaction`` is the error by interaction of the force at given separation, ``fraction`` the contact fraction,
-    ``others`` are all other parts of the error, ``origin`` the code of ``ORIGINS``: arrays that go together.
+    ``others`` are all other parts of the error, ``origin`` the code of ``ORIGINS`` and ``grid`` the points of a grid,
+    0 of pairs, NaN of independent contacts: arrays that go together. NaN where an error is not known.
     """
-    found = [np.zeros(np.broadcast_shapes(interaction.shape, fraction.shape, origin.shape)) for _ in NAMES]
-    for method, own in _methods(origin, coupled):
+    shape = np.broadcast_shapes(interaction.shape, fraction.shape, origin.shape, grid.shape)
+    found = [np.full(shape, np.nan) for _ in NAMES]
+    for method, own in _methods(origin, grid):
         for error, (share, constant, root) in zip(found, method.errors, strict=True):
             np.copyto(error, share * interaction + constant + root * np.sqrt(fraction) + others, where=own)
     touching = np.where(fraction > 0.0, 1.0, 0.0 * fraction)
@@ -112,35 +123,41 @@ def relative_at_force(
 
 
 def interaction_along(
-    largest: Floats, fraction: Floats, largest_fraction: Floats, origin: Floats, coupled: NDArray[np.bool_]
+    largest: Floats, fraction: Floats, largest_fraction: Floats, origin: Floats, grid: Floats
 ) -> Floats:
     """Return the error by interaction [1] at a contact fraction, from the ``largest`` of a path and the fraction there.
 
     It is for results that store the largest alone.
     """
-    found = np.zeros(np.broadcast_shapes(largest.shape, fraction.shape, origin.shape))
-    for method, own in _methods(origin, coupled):
+    found = np.full(np.broadcast_shapes(largest.shape, fraction.shape, origin.shape, grid.shape), np.nan)
+    for method, own in _methods(origin, grid):
         here, there = np.broadcast_arrays(method.interaction(fraction), method.interaction(largest_fraction))
         share = np.divide(here, there, out=np.zeros(here.shape), where=there > 0.0)
         np.copyto(found, largest * share, where=own)
     return found
 
 
-def pull_off_error(fraction: Floats, tabor: Floats, origin: Floats, coupled: NDArray[np.bool_]) -> Floats:
+def pull_off_error(
+    fraction: Floats, tabor: Floats, interaction: Floats, slope: Floats, origin: Floats, grid: Floats
+) -> Floats:
     """Return the relative error of the pull-off force [1], at most 1, from the contact fraction and Tabor number there.
 
-    Nothing is known of a range that is not given: NaN for the ``tabor`` number.
+    ``interaction`` and ``slope`` are these parts of the model error, the largest of the path. Nothing is known of a
+    range that is not given: NaN for the ``tabor`` number.
     """
-    of_range = np.minimum(np.nan_to_num(_RANGE / np.maximum(tabor, 1e-9) ** _RANGE_POWER), 1.0 / 3.0)
-    found = np.zeros(np.broadcast_shapes(fraction.shape, origin.shape, coupled.shape))
+    of_range = np.minimum(np.nan_to_num(_RANGE / np.maximum(tabor, _LEAST_TABOR) ** _RANGE_POWER), _DMT)
+    found = np.full(np.broadcast_shapes(fraction.shape, origin.shape, grid.shape), np.nan)
     for (kind, pairs), error in _PULL_OFF.items():
-        np.copyto(found, error(fraction), where=(origin == ORIGINS.index(kind)) & (coupled == pairs))
-    return np.minimum(found + of_range, 1.0)
+        own = (origin == ORIGINS.index(kind)) & (np.isfinite(grid) == pairs)
+        np.copyto(found, error(fraction), where=own)
+    return np.minimum(np.where(interaction > 0.0, found, 0.0 * interaction) + of_range + slope, 1.0)
 
 
-def _methods(origin: Floats, coupled: NDArray[np.bool_]) -> Iterator[tuple[Method, NDArray[np.bool_]]]:
+def _methods(origin: Floats, grid: Floats) -> Iterator[tuple[Method, NDArray[np.bool_]]]:
     """Yield the methods of the runs, and which runs are computed by each."""
     for (kind, pairs), method in METHODS.items():
-        own = (origin == ORIGINS.index(kind)) & (coupled == pairs)
+        own = (origin == ORIGINS.index(kind)) & ((grid == 0.0) if pairs else np.isnan(grid))
         if own.any():
             yield method, own
+    if (grid > 0.0).any():
+        yield _ON_GRID, np.broadcast_to(grid > 0.0, np.broadcast_shapes(origin.shape, grid.shape))

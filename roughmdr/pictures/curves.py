@@ -8,10 +8,10 @@ import numpy as np
 
 from roughmdr.errors import StoreError
 from roughmdr.numerics.arguments import Floats
-from roughmdr.result.model_errors import errors_along
+from roughmdr.result.model_errors import error_of_mean
 from roughmdr.result.view import Leg, ResultView
 from roughmdr.schema.wording import suggestion
-from roughmdr.variables import CURVE_VARIABLES, LAW_VARIABLES, MODEL_ERROR, OVER_AREA, TIME
+from roughmdr.variables import CURVE_VARIABLES, LAW_VARIABLES, OVER_AREA, TIME
 
 _PER_AREA = {
     **{total: (OVER_AREA[total], CURVE_VARIABLES[OVER_AREA[total]].units) for total in ("force", "contact_area")},
@@ -170,14 +170,4 @@ def _mean(result: ResultView, name: str) -> tuple[Floats, Floats]:
 
 def _model_error(result: ResultView, name: str, mean: Floats) -> Floats:
     """Return the error of the model of a mean, of a result with the error at each step; NaN where it is not known."""
-    if not result.holds("model_error_curve"):
-        return np.full_like(mean, np.nan)
-    suffix = "_mean" if result.keeps_statistics else ""
-    error = errors_along(result).get(f"{name}{suffix}{MODEL_ERROR}")
-    if error is None:
-        return np.full_like(mean, np.nan)
-    if "realization" not in error.dims:
-        return np.asarray(error.values)
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", RuntimeWarning)  # steps that no realisation has
-        return np.asarray(np.nanmean(error.values, axis=error.dims.index("realization")))
+    return error_of_mean(result, name) if result.holds("model_error_curve") else np.full_like(mean, np.nan)

@@ -15,6 +15,7 @@ from roughmdr.result.trust import trust_of_result
 from roughmdr.result.view import ResultView
 from roughmdr.schema.wording import escape_controls
 from roughmdr.storage.labelled import Array
+from roughmdr.variables import WITH_MODEL_ERROR
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -141,7 +142,7 @@ def _entries(result: ResultView, names: Sequence[str], *, marked: bool, shaded: 
         entries.append(Patch(color=blue, alpha=0.12, lw=0, label="9 of 10 realisations"))
     if "stiffness" in names and "unloading" in branches and result.adheres:
         entries.append(Patch(color=BRANCH_COLOURS["unloading"], alpha=0.3, lw=0, label="stiffness: median, 2 of 3"))
-    if result.holds("model_error_curve"):
+    if result.holds("model_error_curve") and not {*names}.isdisjoint(WITH_MODEL_ERROR):
         entries.append(Patch(color="0.5", alpha=0.4, lw=0, label="error of the model"))
     if shaded:
         entries.append(Patch(color="0.5", alpha=0.2, lw=0, label="beyond the range of trust"))

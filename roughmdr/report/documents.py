@@ -57,7 +57,7 @@ class CellTable(TypedDict):
     pull_off: PullOffTable | None
     model_error: float
     parts: dict[str, float]  # of the model error, by their names in results
-    at_given_pressure: dict[str, float]  # largest relative model errors of other variables there, by their names
+    at_given_pressure: dict[str, float]  # largest model errors of other variables there, over the true value
     largest_contact_fraction: float
     effective_contacts: float  # that carry the load at closest approach
     sampling_error: float  # of the force there, from patch to patch

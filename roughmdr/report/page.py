@@ -17,7 +17,7 @@ from roughmdr.pictures.style import png_of, styled
 from roughmdr.report.cite import describe_papers
 from roughmdr.report.summary import describe_cells, summary_lines
 from roughmdr.result.given import given_result
-from roughmdr.result.trust import at_force_of_result
+from roughmdr.result.model_errors import largest_of_result
 from roughmdr.result.view import ResultView
 from roughmdr.schema.keywords import named_keywords
 from roughmdr.schema.wording import escape_controls, gathered
@@ -167,9 +167,10 @@ def error_rows(result: ResultView) -> Iterator[ErrorRow]:
         for part, reason in PARTS.items():
             if (size := result.largest(part)) > 0.0:
                 yield ErrorRow(f"– {part.removesuffix('_error').replace('_', ' ')}", size, f"part of it: {reason}")
-        for name, size in at_force_of_result(result).items():
-            meaning = "assumptions of the model, at closest approach, of itself at given pressure"
-            yield ErrorRow(name.replace("_", " "), size, meaning)
+        for name, size in largest_of_result(result).items():
+            if not np.isnan(size):
+                words = name.replace("_", " ")
+                yield ErrorRow(words, size, f"assumptions of the model, of the {words} at given pressure")
 
 
 def _of_draws(result: ResultView) -> Iterator[ErrorRow]:

@@ -13,7 +13,7 @@ from roughmdr.report.documents import ForeseenTable, PlanTable, trust_table
 from roughmdr.report.prospect import implausible_lines, largest_tension, pressure_at_closest, prospect_lines
 from roughmdr.report.result_document import coordinate_tables, swept_table
 from roughmdr.report.summary import counted, motion_lines
-from roughmdr.result.trust import largest_at_force
+from roughmdr.result.model_errors import largest_at_force
 from roughmdr.schema.units import format_quantity
 from roughmdr.schema.wording import format_bytes, format_seconds, format_table, printable, under
 from roughmdr.variables import LATERAL, SAMPLE, YIELDING

@@ -19,7 +19,8 @@ from roughmdr.report.documents import (
     trust_table,
 )
 from roughmdr.report.summary import describe_failed, first_remark
-from roughmdr.result.trust import largest_at_force, trust_of_result
+from roughmdr.result.model_errors import largest_of_result
+from roughmdr.result.trust import trust_of_result
 from roughmdr.result.view import ResultView, swept_values
 from roughmdr.stages import STAGES
 from roughmdr.storage.labelled import Array
@@ -99,9 +100,7 @@ def _cell(result: ResultView, number: int, cell: tuple[int, ...]) -> CellTable:
         "pull_off": _pull_off(result, cell),
         "model_error": largest("model_error"),
         "parts": {name: largest(name) for name in PARTS},
-        "at_given_pressure": largest_at_force(
-            {name: array.values[cell] for name, array in result.variables.items() if "step" not in array.dims}
-        ),
+        "at_given_pressure": largest_of_result(result, cell),
         "largest_contact_fraction": largest("largest_contact_fraction"),
         "effective_contacts": float(np.fmin.reduce(values("effective_contacts"))),
         "sampling_error": largest("sampling_error"),

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from roughmdr.model_error.at_force import QUANTITIES, interaction_along, relative_at_force
+from roughmdr.model_error.at_force import NAMES, QUANTITIES, interaction_along, relative_at_force
 from roughmdr.model_error.parts import PARTS
 from roughmdr.numerics.arguments import Floats
 from roughmdr.result.curves import Read
@@ -25,61 +25,70 @@ FORCES = ("force", "pressure")
 _AREAS = ("contact_fraction", "contact_area")
 _H = SEPARATION.name
 _STATED, _BY_JKR = "model_error_curve", "adhesion_range_error"
-_NUMBERS = (*PARTS, "largest_contact_fraction", "asperity_origin", "grid_points")
+_NUMBERS = (*PARTS, "largest_contact_fraction", "asperity_origin", "grid_points", "avalanche_count")
+"""Numbers of a run that its errors follow from; independent contacts have none of the last two."""
 _MOST = 0.9
 """Largest relative error that a value is corrected for: of a value that is too small by more nothing is left."""
 
 
-def errors_at(*arrays: Floats, names: Sequence[str], given: str, adheres: bool) -> tuple[Floats, ...]:
+def errors_at(*arrays: Floats, names: Sequence[str], given: str) -> tuple[Floats, ...]:
     """Return the error of each of the ``names`` where a quantity is ``given``: arrays that go together, [...].
 
-    Arrays are contact fraction and model_error_curve, NaN where they are not known, the largest force of the path, the
-    variables and how much each changes over a step there, and the numbers of the run.
+    Arrays are contact fraction and model_error_curve, NaN where they are not known, the largest magnitude and the
+    largest tension of the force on the path, the variables and how much each changes over a step there, and the numbers
+    of the run. The separation has none on a plateau of the force.
     """
-    fraction, stated, largest = arrays[:3]
+    fraction, stated, largest, tension = arrays[:4]
     count = len(names)
-    values = dict(zip(names, arrays[3 : 3 + count], strict=True))
-    changes = dict(zip(names, arrays[3 + count : 3 + 2 * count], strict=True))
-    numbers = dict(zip(_NUMBERS, arrays[3 + 2 * count :], strict=True))
+    values = dict(zip(names, arrays[4 : 4 + count], strict=True))
+    changes = dict(zip(names, arrays[4 + count : 4 + 2 * count], strict=True))
+    numbers = dict(zip(_NUMBERS, arrays[4 + 2 * count :], strict=True))
     force = _first(FORCES, names)
-    whole, over_largest, at_force = _relative_errors(values[force], fraction, stated, numbers, adheres)
-    of_force = np.abs(values[force]) * _over_value(whole - over_largest) + largest * over_largest
-    shift = _over(of_force, changes[force])
+    of_itself, over_largest, at_force = _relative_errors(values[force], fraction, stated, numbers)
+    # Contacts that push and pull leave little of their errors in the sum: they are at least of the tension.
+    of_force = np.maximum(np.abs(values[force]), tension) * _of_value(of_itself) + largest * over_largest
+    by_stiffness = force == "force" and "stiffness" in values  # the slope of the law itself, also at a single load
 
     def at_given_force(name: str) -> Floats:
+        if name == _H and by_stiffness:
+            return _per_change(of_force, values["stiffness"])
         if name == _H:
-            return shift * np.abs(changes[_H])
-        return np.abs(values[name]) * _over_value(at_force[QUANTITIES[name]])
+            return _per_change(of_force, changes[force]) * np.abs(changes[_H])
+        return np.abs(values[name]) * _of_value(at_force[QUANTITIES[name]])
 
     kept = next((_first(alike, names) for alike in (FORCES, _AREAS) if given in alike), _H)
-    moved = 0.0 * shift if kept in FORCES else _over(at_given_force(kept), changes[kept])
 
     def error(name: str) -> Floats:
+        if kept in FORCES:
+            return 0.0 * of_force if name in FORCES else at_given_force(name)
+        moved = np.abs(changes[name]) * _per_change(at_given_force(kept), changes[kept])
         if name not in FORCES:
-            return at_given_force(name) + np.abs(changes[name]) * moved
-        return of_force * _over(np.abs(changes[name]), changes[force]) if kept == _H else np.abs(changes[name]) * moved
+            return at_given_force(name) + moved
+        if kept != _H:
+            return moved
+        return of_force if name == force else of_force * _per_change(np.abs(values[name]), values[force])
 
     return tuple(np.broadcast_arrays(*(error(name) for name in names)))
 
 
 def _relative_errors(
-    force: Floats, fraction: Floats, stated: Floats, numbers: Mapping[str, Floats], adheres: bool
+    force: Floats, fraction: Floats, stated: Floats, numbers: Mapping[str, Floats]
 ) -> tuple[Floats, Floats, list[Floats]]:
     """Return the error of the force at given separation, its part over the largest force, and errors [1] of quantities
     at given force.
     """
-    touching, origin, coupled = force != 0.0, numbers["asperity_origin"], np.isfinite(numbers["grid_points"])
+    touching, origin, grid = force != 0.0, numbers["asperity_origin"], numbers["grid_points"]
     interaction, by_jkr, most = (numbers[name] for name in ("interaction_error", _BY_JKR, "largest_contact_fraction"))
     others = np.add.reduce([numbers[name] for name in PARTS if name not in ("interaction_error", _BY_JKR)])
     fraction = np.where(np.isnan(fraction), np.where(touching, most, 0.0), fraction)
-    foreseen = interaction_along(interaction, fraction, most, origin, coupled)
+    foreseen = interaction_along(interaction, fraction, most, origin, grid)
     foreseen += np.where(touching, others + by_jkr, 0.0)
     whole = np.where(np.isnan(stated), np.minimum(foreseen, 1.0), stated)
-    sticky_hills = adheres & (origin == ORIGINS.index("hills"))
-    over_largest = np.where(sticky_hills, whole, np.minimum(whole, by_jkr))
-    own = np.maximum(whole - over_largest - np.where(touching, others, 0.0), 0.0)
-    at_force = relative_at_force(own, fraction, others + by_jkr, origin, coupled)
-    return whole, over_largest, [np.where(sticky_hills, np.fmax(each, whole), each) for each in at_force]
+    of_jkr = np.minimum(whole, by_jkr)
+    own = np.maximum(whole - of_jkr - np.where(touching, others, 0.0), 0.0)
+    sticky_hills = (origin == ORIGINS.index("hills")) & np.isfinite(numbers["avalanche_count"])
+    over_largest = np.where(sticky_hills, whole, of_jkr)  # which hills attraction with a range makes sooner
+    return whole - over_largest, over_largest, relative_at_force(own, fraction, others + by_jkr, origin, grid)
 
 
 def attributes(name: str, given: str) -> dict[str, str]:
@@ -91,7 +100,7 @@ def attributes(name: str, given: str) -> dict[str, str]:
 
 def known_in(result: ResultView, curves: Collection[str]) -> list[str]:
     """Return the names of ``curves`` whose error is known: none under a body, on a lateral path, without a force."""
-    told = set(result.variables) >= {*_NUMBERS[:-1]} and result.flat and result.control != LATERAL.name
+    told = set(result.variables) >= {*_NUMBERS[:-2]} and result.flat and result.control != LATERAL.name
     bare = {_bare(name): name for name in curves if _bare(name) in WITH_MODEL_ERROR}
     return list(bare.values()) if told and not set(FORCES).isdisjoint(bare) and _H in bare else []
 
@@ -110,16 +119,18 @@ def errors_there(
         return {}
     dataset, names = result.dataset, [_bare(label) for label in labels]
     unknown = np.nan * read[names[0]].value
-    largest = abs(curves[labels[names.index(_first(FORCES, names))]]).max("step")
+    force = curves[labels[names.index(_first(FORCES, names))]]
+    largest, tension = abs(force).max("step"), (-force).max("step").clip(0.0)
     numbers = (dataset.get(name, np.nan * dataset["interaction_error"]) for name in _NUMBERS)
     errors = xr.apply_ufunc(
         errors_at,
         *(read[name].value if name in read else unknown for name in ("contact_fraction", _STATED)),
         largest,
+        tension,
         *(read[name].value for name in names),
         *(read[name].rise for name in names),
         *numbers,
-        kwargs={"names": names, "given": given, "adheres": adheres(result)},
+        kwargs={"names": names, "given": given},
         output_core_dims=[[]] * len(labels),
         keep_attrs=False,
         dask="parallelized",
@@ -133,14 +144,14 @@ def errors_there(
 
 
 def errors_along(result: ResultView) -> dict[str, Array]:
-    """Return the errors of variables along a path of given separation, force or pressure, by their names.
+    """Return the errors of variables along a path, by their names: of a machine or to a preload at given separation.
 
-    None for other paths, and where errors are not known.
+    None where errors are not known.
     """
     given, suffix = result.control, "_mean" if result.keeps_statistics else ""
     held = {**result.coordinates, **result.variables}
     labels = known_in(result, [name for name in held if "step" in held[name].dims])
-    if not labels or given not in (*FORCES, _H):
+    if not labels:
         return {}
     dims = (*result.variables["interaction_error"].dims, "step")
 
@@ -153,15 +164,14 @@ def errors_along(result: ResultView) -> dict[str, Array]:
     if np.isnan(fraction).all():
         fraction = values("contact_area") / values("nominal_area")
     curves = [values(name) for name in names]
-    largest = np.fmax.reduce(np.abs(curves[names.index(_first(FORCES, names))]), axis=-1, keepdims=True)
-    changes = [_changes(each, result.legs) for each in curves]
-    if given in FORCES and {"force", "stiffness"} <= {*names}:  # the slope of the law itself, also at a single load
-        stiffness = curves[names.index("stiffness")]
-        for name, change in (("force", stiffness), (_H, np.where(np.isfinite(stiffness), 1.0, np.nan))):
-            changes[names.index(name)] = change
+    force = curves[names.index(_first(FORCES, names))]
+    largest, tension = (np.fmax.reduce(each, axis=-1, keepdims=True, initial=0.0) for each in (np.abs(force), -force))
+    known = np.where(np.isnan(curves[names.index(_H)]), np.nan, 1.0)  # both of a step, so that changes go together
+    changes = [_changes(known * each, result.legs) for each in curves]
     numbers = [values(name) for name in _NUMBERS]
-    options: dict[str, Any] = {"names": names, "given": given, "adheres": adheres(result)}
-    errors = errors_at(fraction, values(_STATED), largest, *curves, *changes, *numbers, **options)
+    errors = errors_at(
+        fraction, values(_STATED), largest, tension, *curves, *changes, *numbers, names=names, given=given
+    )
     return {
         f"{label}{MODEL_ERROR}": Array(dims, np.array(error), attributes(name, given))
         for label, name, error in zip(labels, names, errors, strict=True)
@@ -169,9 +179,41 @@ def errors_along(result: ResultView) -> dict[str, Array]:
     }
 
 
-def adheres(result: ResultView) -> bool:
-    """Return whether asperities adhere; of a law of one ensemble by its avalanches, which coupled ones alone have."""
-    return result.adheres or "avalanche_count" in result.variables
+def largest_at_force(numbers: Mapping[str, Any]) -> dict[str, float]:
+    """Return the largest relative errors of quantities at given force [1], by their names: NaN where not known.
+
+    ``numbers`` are those of one run or arrays over runs, by name; nothing is told without all that errors follow from.
+    """
+    if not numbers.keys() >= {*_NUMBERS[:-2]}:
+        return {}
+    of = {name: np.asarray(numbers.get(name, np.nan), dtype=np.float64)[..., None] for name in _NUMBERS}
+    others = np.add.reduce([of[name] for name in PARTS if name != "interaction_error"])
+    known = (of[name] for name in ("asperity_origin", "grid_points"))
+    found = relative_at_force(of["interaction_error"], of["largest_contact_fraction"], others, *known)
+    return {name: float(np.fmax.reduce(each, axis=None)) for name, each in zip(NAMES, found, strict=True)}
+
+
+def largest_of_result(result: ResultView, cell: tuple[int, ...] = ()) -> dict[str, float]:
+    """Return ``largest_at_force`` of all runs of a result, or of a cell; nothing under a body that is no flat."""
+    names = [name for name in _NUMBERS if name in result.variables] if result.flat else []
+    return largest_at_force({name: result.variables[name].values[cell] for name in names})
+
+
+def error_of_mean(result: ResultView, name: str) -> Floats:
+    """Return the mean over the realisations of the errors of a variable along the path, as its mean; NaN where unknown.
+
+    A load that some realisations do not bear, or an error that is not known, does not count.
+    """
+    suffix = "_mean" if result.keeps_statistics else ""
+    error = errors_along(result).get(f"{name}{suffix}{MODEL_ERROR}")
+    if error is None:
+        return np.full((*result.sweep.values(), result.sizes["step"]), np.nan)
+    if "realization" not in error.dims:
+        return error.values
+    known = np.isfinite(error.values)
+    axis, count = error.dims.index("realization"), known.sum(axis=error.dims.index("realization"))
+    total = np.where(known, error.values, 0.0).sum(axis=axis)
+    return np.asarray(np.divide(total, count, out=np.full(total.shape, np.nan), where=count > 0))
 
 
 def _bare(label: str) -> str:
@@ -185,25 +227,33 @@ def _first(names: Sequence[str], among: Collection[str]) -> str:
 
 def _spread(array: Array, dims: Sequence[str]) -> Floats:
     """Return the values of an array over dimensions, of length 1 where it does not have them."""
-    sizes = dict(zip(array.dims, array.values.shape, strict=True))
-    return np.asarray(array.values, dtype=np.float64).reshape([sizes.get(dim, 1) for dim in dims])
+    own = [dim for dim in dims if dim in array.dims]
+    values = np.asarray(array.values, dtype=np.float64).transpose([array.dims.index(dim) for dim in own])
+    sizes = dict(zip(own, values.shape, strict=True))
+    return values.reshape([sizes.get(dim, 1) for dim in dims])
 
 
-def _over_value(error: Floats) -> Floats:
+def _changes(curve: Floats, legs: Sequence[Leg]) -> Floats:
+    """Return the change of a curve over the two steps around each of a leg, or over the one that is known: [..., step].
+
+    NaN where neither is.
+    """
+    found = np.full(curve.shape, np.nan)
+    for leg in legs:
+        step = np.diff(curve[..., leg.steps], axis=-1)
+        none = np.full((*curve.shape[:-1], 1), np.nan)
+        before, after = (np.concatenate(parts, axis=-1) for parts in ((none, step), (step, none)))
+        both = before + after
+        found[..., leg.steps] = np.where(np.isnan(both), np.fmax(before, after), both)
+    return found
+
+
+def _of_value(error: Floats) -> Floats:
     """Return a relative error, which is over the true value, over a value that is too small by it."""
     return np.asarray(error / (1.0 - np.minimum(error, _MOST)))
 
 
-def _changes(curve: Floats, legs: Sequence[Leg]) -> Floats:
-    """Return the change of a curve over the two steps around each of a leg, or over one at its ends: [..., step]."""
-    found = np.full(curve.shape, np.nan)
-    for leg in legs:
-        part = np.concatenate([curve[..., leg.steps[:1]], curve[..., leg.steps], curve[..., leg.steps[-1:]]], axis=-1)
-        found[..., leg.steps] = part[..., 2:] - part[..., :-2]
-    return found
-
-
-def _over(error: Floats, change: Floats) -> Floats:
+def _per_change(error: Floats, change: Floats) -> Floats:
     """Return an error over the magnitude of a change; 0 where the error is, NaN on a plateau."""
     error, size = np.broadcast_arrays(error, np.abs(change))
     known = (size > 0.0) & (error != 0.0)

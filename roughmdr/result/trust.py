@@ -7,7 +7,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from roughmdr.model_error.at_force import NAMES, relative_at_force
 from roughmdr.model_error.coupling import MARKED_SHARE, foreseen_error, summits_error
 from roughmdr.model_error.interaction import (
     ASPERITIES,
@@ -21,6 +20,7 @@ from roughmdr.model_error.interaction import (
 from roughmdr.model_error.parts import PARTS, TRUSTED_ERROR, TRUSTED_FRACTION
 from roughmdr.numerics.arguments import Floats
 from roughmdr.result.hardness import hardness_lines
+from roughmdr.result.model_errors import largest_at_force
 from roughmdr.result.view import ResultView
 from roughmdr.schema.units import format_quantity
 from roughmdr.schema.wording import under
@@ -39,9 +39,6 @@ _OPENINGS = {
 }
 _NAMES = {"model_error", *PARTS, "largest_contact_fraction", "trusted_separation", "overlap_fraction"}
 _BESIDES = {"grid_points", "asperity_origin"}
-_BESIDE_PARTS = ("interaction_error", "largest_contact_fraction", "asperity_origin")
-_AT_FORCE = dict.fromkeys((*PARTS, *_BESIDE_PARTS))
-"""Numbers from which errors at given force follow."""
 _BY_FRACTION = {"interaction_error", "largest_contact_fraction", "overlap_fraction"}
 _AT_PULL_OFF = "pull_off_contact_fraction"
 
@@ -88,7 +85,8 @@ def trust_lines(
     if not (known["model_error"] > 0.0).any():
         yield "trust", "no contact along the whole path"
         return
-    at_force = _at_force(numbers, asperities=interaction != "pairwise" and coefficients is ASPERITIES)
+    independent = interaction != "pairwise" and coefficients is ASPERITIES
+    at_force = [] if curved else _at_force(numbers, asperities=independent)
     if interaction == "pairwise":
         yield "model error", _coupling(known, summits)
         yield from under("", [*at_force, *others])
@@ -129,33 +127,16 @@ def trust_of_result(result: ResultView) -> Iterator[tuple[str, str]]:
     yield from hardness_lines({name: result.known(name) for name in YIELDING})
 
 
-def largest_at_force(numbers: Numbers) -> dict[str, float]:
-    """Return the largest relative errors of quantities at given force [1], by their names; none if a number is not."""
-    if not numbers.keys() >= set(_AT_FORCE):
-        return {}
-    of_runs = {name: np.asarray(numbers[name], dtype=np.float64)[..., None] for name in _AT_FORCE}
-    interaction, fraction, origin = (of_runs.pop(name) for name in _BESIDE_PARTS)
-    grid = np.asarray(numbers.get("grid_points", math.nan))[..., None]
-    others = np.add.reduce([*of_runs.values()])
-    found = relative_at_force(interaction, fraction, others, origin, np.isfinite(grid))
-    return {name: float(_known(each).max(initial=0.0)) for name, each in zip(NAMES, found, strict=True)}
-
-
-def at_force_of_result(result: ResultView) -> dict[str, float]:
-    """Return these of all runs of a result."""
-    held = {name: result.variables[name].values for name in (*_AT_FORCE, "grid_points") if name in result.variables}
-    return largest_at_force(held)
-
-
 def _at_force(numbers: Numbers, *, asperities: bool) -> list[str]:
     """Return in words the errors at given pressure; of independent ``asperities`` their signs are known."""
-    shares = [_percent(each) for each in largest_at_force(numbers).values()]
-    if not shares:
+    errors = largest_at_force(numbers)
+    if not errors or math.isnan(max(errors.values())):
         return []
+    shares = [_percent(each) for each in errors.values()]
     area, stiffness, conductance, _ = shares
     large, small = (", mostly too large", ", mostly too small") if asperities else ("", "")
     stiff = f"and conductance {stiffness}" if stiffness == conductance else f"{stiffness}, conductance {conductance}"
-    return [f"at given pressure: contact area within {area}{large}; stiffness {stiff}{small}"]
+    return [f"at given pressure at most: contact area {area}{large}; stiffness {stiff}{small}"]
 
 
 def _has_summits(table: dict[str, Any]) -> bool:
@@ -239,10 +220,9 @@ def _trust_coupled(known: dict[str, Floats], summits: bool) -> str:
     """Return in words the error of the force of coupled asperities, and the range where it holds."""
     parts = {name: float(known[name].max(initial=0.0)) for name in PARTS}
     whole, beyond, rest = sum(parts.values()), known["trusted_separation"], ""
-    if beyond.size:
+    if beyond.size and not summits:  # flanks of summits cost more than that from first touch on
         lowest = format_quantity(float(beyond.max()), "m")
-        by = "interaction and flanks of summits" if summits else "interaction"
-        rest = f"; the part by {by} stays within {_percent(TRUSTED_ERROR)} down to h = {lowest}"
+        rest = f"; the part by interaction stays within {_percent(TRUSTED_ERROR)} down to h = {lowest}"
     if whole >= 1.0:
         return "none: the force may be off by all of it"
     return f"force within about {_percent(whole)} along the whole path{rest}"

@@ -23,7 +23,7 @@ from roughmdr.variables import (
 )
 
 _COUNTS = ("realization_count", "pull_off_count")
-_CODES = ("adhesion_law", "accuracy_method")
+_CODES = ("adhesion_law", "accuracy_method", "asperity_origin")
 _KNOWN_TOGETHER = {
     "largest_contact_fraction": [name for name in RUN_DIAGNOSTICS if name.endswith("_error") and name not in SAMPLE],
     "avalanche_count": ["avalanche_size_max"],

@@ -57,12 +57,13 @@ def test_at_a_given_separation_the_error_of_the_force_is_that_of_the_curve(resul
 
 def test_the_separation_is_off_by_the_error_of_the_force_over_the_slope(result: xr.Dataset) -> None:
     one = result.isel(realization=0)
-    errors = errors_along(ResultView(result))
+    errors = errors_along(ResultView(result))[f"force{MODEL_ERROR}"].values[0, [30, 45]]
+    found = one.roughmdr.at_force(one.force.values[[30, 45]])[f"separation{MODEL_ERROR}"]
+    np.testing.assert_allclose(found, errors / one.stiffness.values[[30, 45]], rtol=1e-6)
     force, h = one.force.values, one.separation.values
     slope = np.diff(force)[[29, 44]] / np.diff(h)[[29, 44]]  # of the step that ends there
-    at = one.roughmdr.at_force(force[[30, 45]])
-    expected = errors[f"force{MODEL_ERROR}"].values[0, [30, 45]] / np.abs(slope)
-    np.testing.assert_allclose(at[f"separation{MODEL_ERROR}"], expected, rtol=1e-6)
+    found = one.drop_vars("stiffness").roughmdr.at_force(force[[30, 45]])[f"separation{MODEL_ERROR}"]
+    np.testing.assert_allclose(found, errors / np.abs(slope), rtol=1e-6)
 
 
 @pytest.mark.parametrize("interaction", [None, {"model": "mean_field"}], ids=["independent", "mean field"])
@@ -166,3 +167,26 @@ def test_of_a_reference_that_is_given_the_errors_are_those_at_its_separation() -
     assert float(there[f"contact_area{MODEL_ERROR}"]) == pytest.approx(
         float(own[f"contact_area{MODEL_ERROR}"]), rel=0.2
     )
+
+
+def test_holds_plateaus_and_zero_loads_have_errors_too() -> None:
+    """Only the separation needs the slope of the law; contacts that push and pull leave some error of their sum."""
+    held = run(path={"separation": ["2 um", "1 um", "1 um", "1 um"]}, more=["model_error_curve"]).isel(realization=0)
+    errors = errors_along(ResultView(held))
+    expected = held.force * held.model_error_curve / (1.0 - held.model_error_curve)
+    np.testing.assert_allclose(errors[f"force{MODEL_ERROR}"].values, expected, rtol=1e-9)
+    loads = run(path={"force": ["1 mN", "2 mN", "2 mN", "2 mN"]})
+    for name in ("contact_area", "stiffness", "separation"):
+        assert np.isfinite(loads[f"{name}{MODEL_ERROR}"]).all()
+    sticky = {"adhesion": {"model": "jkr", "work": "50 mJ/m^2"}, "path": {**_PATH, "unload": True}}
+    free = run(**sticky).roughmdr.at_force(0.0, branch="unloading")
+    assert bool((free[f"separation{MODEL_ERROR}"] > 1e-10).all())
+
+
+def test_the_order_of_dimensions_does_not_matter() -> None:
+    swept = run(path={"force": ["0.1 mN", "1 mN"]}, sweep={"material.modulus": ["3 MPa", "5 MPa"]})
+    turned = swept.transpose("step", "realization", "material_modulus")
+    errors = errors_along(ResultView(turned))
+    for name in (f"{each}{MODEL_ERROR}" for each in ("contact_area", "separation", "stiffness")):
+        array = xr.DataArray(errors[name].values, dims=errors[name].dims)
+        np.testing.assert_allclose(array.transpose(*swept[name].dims), swept[name], rtol=1e-12)

@@ -10,11 +10,11 @@ from roughmdr.report.export.law import Quantity, Source
 from roughmdr.report.export.table import RELATIVE_FROM, Table
 from roughmdr.report.export.units import UnitSystem
 from roughmdr.result.between import CONFIDENCE
-from roughmdr.result.model_errors import FORCES, errors_along
+from roughmdr.result.model_errors import error_of_mean
 from roughmdr.result.trust import trust_of_result
 from roughmdr.result.view import ResultView
 from roughmdr.schema.wording import gathered
-from roughmdr.variables import CONDUCTANCES, MODEL_ERROR, TIME
+from roughmdr.variables import CONDUCTANCES, TIME
 
 
 def origin_lines(cell: ResultView, words: str) -> Iterator[tuple[str, str]]:
@@ -65,12 +65,11 @@ def table_lines(
         departure = f"{table.departure / pressure.size:.3g} {pressure.name}"
         yield "departure", f"up to {departure} at steps that a load jumps over"
     yield from model_lines(cell)
-    if variable not in FORCES and not quantity.over_pressure:
-        error = errors_along(cell).get(f"{variable}{'_mean' if cell.keeps_statistics else ''}{MODEL_ERROR}")
-        if error is not None:
-            share = float(np.fmax.reduce(error.values, axis=None)) / float(
-                np.fmax.reduce(cell.mean(variable)[0], axis=None)
-            )
+    if quantity.name == "area":
+        error = error_of_mean(cell, variable)
+        value = cell.mean(variable)[0]
+        closest = np.unravel_index(np.nanargmax(value), value.shape)
+        if np.isfinite(share := error[closest] / value[closest]):
             yield "error of the area", f"at given separation within about {100.0 * share:.2g} % at closest approach"
     yield from contact_pressure_lines(cell)
     if variable in CONDUCTANCES:
