@@ -254,13 +254,17 @@ def methods(result: xr.Dataset) -> dict[str, Any]:
 def draw(result: xr.Dataset) -> "Figure":
     """Draw stated over true errors of quantities at given pressure."""
     asked = [f"{quantity} at given pressure" for quantity in ("contact_fraction", "stiffness", "separation")]
-    figure, row = panels(15, 5.2, len(asked))
+    groups = result["group"].values
+    figure, row = panels(16, 4.8, len(asked))
     for panel, name in zip(row, asked, strict=True):
         one = result.sel(asked=name)
         error = np.maximum(np.abs(one["error"].to_numpy()), one["unknown"].to_numpy())
-        own = {label: np.broadcast_to(cases[:, None], error.shape) for label, cases in methods(result).items()}
+        own = {name: np.broadcast_to((groups == name)[:, None], error.shape) for name in dict.fromkeys(groups)}
         draw_stated(panel, error, one["stated"].to_numpy(), own)
-        panel.set(title=name.replace("_", " "))
+        panel.set(title=name.replace("_", " "), xlabel="true error, or that of boundary elements (relative)")
+        if (legend := panel.get_legend()) is not None:
+            legend.remove()
+    figure.legend(*row[0].get_legend_handles_labels(), loc="outside right center", fontsize=9)
     return figure
 
 
