@@ -88,7 +88,9 @@ def _companions(data: Labelled) -> Iterator[str]:
         if 0 < len(here) < len(alike):
             yield f"it has {here[0]} but no {', '.join(name for name in alike if name not in here)}"
     elements = [each for name in REFERENCE_VARIABLES for each in (name, f"{name}_mean") if each in data.variables]
-    if elements and not ("reference_points" in data.variables and any("_error" in each for each in elements)):
+    if elements and not (
+        "reference_points" in data.variables and any(each.startswith("reference_error") for each in elements)
+    ):
         yield f"it has {elements[0]}, and no reference_error or no reference_points"
     if (data.variables["status"].values == FAILED).any() and "remark" not in data.coordinates:
         yield "runs failed, and no remark says why"

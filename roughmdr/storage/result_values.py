@@ -24,11 +24,12 @@ from roughmdr.variables import (
 
 _COUNTS = ("realization_count", "pull_off_count")
 _CODES = ("adhesion_law", "accuracy_method", "asperity_origin")
+_OF_GRIDS = ("reference_error", "reference_area_error")
 _KNOWN_TOGETHER = {
     "largest_contact_fraction": [name for name in RUN_DIAGNOSTICS if name.endswith("_error") and name not in SAMPLE],
     "avalanche_count": ["avalanche_size_max"],
-    **{name: ["reference_error"] for name in REFERENCE_VARIABLES},
-    **{f"{name}_mean": ["reference_error_mean"] for name in REFERENCE_VARIABLES},
+    **{name: [*_OF_GRIDS] for name in REFERENCE_VARIABLES},
+    **{f"{name}_mean": [f"{each}_mean" for each in _OF_GRIDS] for name in REFERENCE_VARIABLES},
 }
 """Variables that are known where another is."""
 _LARGEST = 1e150  # magnitude of a variable of a law in SI: products of larger ones overflow
