@@ -30,6 +30,7 @@ if TYPE_CHECKING:
 SEED = 2027
 """Seed of the surfaces; those of seed 7 have set the constants."""
 FRACTIONS = np.array([0.003, 0.006, 0.012, 0.025, 0.05, 0.1, 0.15])
+"""Contact fractions at which surfaces are pressed, about."""
 SURFACES = {False: 45, True: 3}
 """Number of surfaces in full and in reduced form."""
 ADHERING = {False: 10, True: 1}
@@ -46,11 +47,8 @@ _PLACEMENTS = ("random", "random", "hard_core 0.5", "hard_core 0.7", "hexagonal"
 _OF_PAIRS = 2e-3  # relative error of coupled asperities, about
 _WORKERS = 2
 _WORDS = {
-    "error": (
-        "error of the quantity at given control over its value; of the separation over force over stiffness",
-        "1",
-    ),
-    "stated": ("stated error of the same", "1"),
+    "error": ("error of a quantity, of the separation over that of force over stiffness", "1"),
+    "stated": ("error that is stated of it", "1"),
     "unknown": ("error of boundary elements", "1"),
 }
 
@@ -127,9 +125,8 @@ def truth_of(surface: Surface) -> tuple[dict[str, Floats], dict[str, Floats]]:
     }  # fmt: skip
     points = np.sqrt(area / (math.pi * np.maximum(contacts, 1.0))) * surface.height.shape[0]
     resolved = (points >= _LEAST_POINTS) & (force > 0.0)
-    return {name: values[resolved] for name, values in found.items()}, unknown_errors(
-        contacts[resolved], points[resolved]
-    )
+    truth = {name: values[resolved] for name, values in found.items()}
+    return truth, unknown_errors(contacts[resolved], points[resolved])
 
 
 def unknown_errors(contacts: Floats, points: Floats) -> dict[str, Floats]:
@@ -170,17 +167,13 @@ def compare(task: tuple[int, int, int]) -> list[dict[str, Any]]:
     rows = []
     for group, ensemble in surface.ensembles.items():
         for model, interaction in _MODELS.items():
-            if (group == "hills" and model != "order 2") or (
-                not surface.periodic and not isinstance(interaction, dict)
-            ):
+            alone = interaction in (None, "mean_field")
+            if (group == "hills" and model != "order 2") or (alone and not surface.periodic):
                 continue
             asked = {**interaction, "boundary": "free"} if not surface.periodic else interaction
             if law := law_to_the_end(ensemble, path_of(surface.separation), asked):
-                labels = {
-                    "group": f"{'cut ' if not surface.periodic else ''}{group}",
-                    "model": model,
-                    "surface": task[1],
-                }
+                cut = "" if surface.periodic else "cut "
+                labels = {"group": f"{cut}{group}", "model": model, "surface": task[1]}
                 rows.append(labels | _row(law, truth, unknown, surface.side))
     return rows
 
@@ -194,7 +187,9 @@ def compare_adhering(task: tuple[int, int]) -> list[dict[str, Any]]:
     ensemble = case.generate()
     height = ensemble["height"].to_numpy()
     std = float(height.std())
-    work = (math.exp(chance.uniform(math.log(0.02), math.log(0.4))) * std) ** 1.5  # lengths of its stretch over std
+    work = (
+        math.exp(chance.uniform(math.log(0.02), math.log(0.4))) * std
+    ) ** 1.5  # [J/m2]: JKR stretches by about this share of std
     along = of_asperities(ensemble, np.array([0.15]))[0]
     path = np.linspace(height.max() + 2.0 * std, along, 2 * _STEPS)
     asked: dict[str, Any] = {"separation": path, "work": work, "unload": True, "effective_modulus": 1.0,

@@ -68,7 +68,7 @@ class LoadSeparation(NamedTuple):
     sampling_error: float = math.nan
     """Relative scatter from patch to patch of the force there, at the same separation; NaN where it is not known."""
     area_sampling_error: float = math.nan
-    """That of the contact area at the same force."""
+    """Relative scatter from patch to patch of the contact area, at the same force; NaN where it is not known."""
 
     @classmethod
     def of(

@@ -60,8 +60,8 @@ class CellTable(TypedDict):
     at_given_pressure: dict[str, float]  # largest model errors of other variables there, over the true value
     largest_contact_fraction: float
     effective_contacts: float  # that carry the load at closest approach
-    sampling_error: float  # of the force there, from patch to patch
-    area_sampling_error: float  # of the contact area at the same force
+    sampling_error: float  # scatter of the force there from patch to patch
+    area_sampling_error: float  # scatter of the contact area at the same force
     trusted_separation: float  # [m]
     yielding: dict[str, float]  # diagnostics of contacts above the hardness, by their names in results
     numerical_error: float
@@ -125,8 +125,8 @@ class ForeseenTable(TypedDict):
     at_given_pressure: dict[str, float]
     largest_contact_fraction: float
     effective_contacts: float  # that carry the load at closest approach
-    sampling_error: float  # of the force there, from patch to patch
-    area_sampling_error: float  # of the contact area at the same force
+    sampling_error: float  # scatter of the force there from patch to patch
+    area_sampling_error: float  # scatter of the contact area at the same force
     contact_fraction_at_pull_off: float
     trusted_separation: float  # [m]
 

@@ -25,8 +25,9 @@ FORCES = ("force", "pressure")
 _AREAS = ("contact_fraction", "contact_area")
 _H = SEPARATION.name
 _STATED, _BY_JKR = "model_error_curve", "adhesion_range_error"
-_NUMBERS = (*PARTS, "largest_contact_fraction", "asperity_origin", "grid_points", "avalanche_count")
-"""Numbers of a run that its errors follow from; independent contacts have none of the last two."""
+_ALWAYS = (*PARTS, "largest_contact_fraction", "asperity_origin")
+_NUMBERS = (*_ALWAYS, "grid_points", "avalanche_count")
+"""Numbers of a run that its errors follow from; those beside ``_ALWAYS`` are known of coupled contacts alone."""
 _MOST = 0.9
 """Largest relative error that a value is corrected for: of a value that is too small by more nothing is left."""
 
@@ -100,7 +101,7 @@ def attributes(name: str, given: str) -> dict[str, str]:
 
 def known_in(result: ResultView, curves: Collection[str]) -> list[str]:
     """Return the names of ``curves`` whose error is known: none under a body, on a lateral path, without a force."""
-    told = set(result.variables) >= {*_NUMBERS[:-2]} and result.flat and result.control != LATERAL.name
+    told = set(result.variables) >= {*_ALWAYS} and result.flat and result.control != LATERAL.name
     bare = {_bare(name): name for name in curves if _bare(name) in WITH_MODEL_ERROR}
     return list(bare.values()) if told and not set(FORCES).isdisjoint(bare) and _H in bare else []
 
@@ -184,7 +185,7 @@ def largest_at_force(numbers: Mapping[str, Any]) -> dict[str, float]:
 
     ``numbers`` are those of one run or arrays over runs, by name; nothing is told without all that errors follow from.
     """
-    if not numbers.keys() >= {*_NUMBERS[:-2]}:
+    if not numbers.keys() >= {*_ALWAYS}:
         return {}
     of = {name: np.asarray(numbers.get(name, np.nan), dtype=np.float64)[..., None] for name in _NUMBERS}
     others = np.add.reduce([of[name] for name in PARTS if name != "interaction_error"])

@@ -1,7 +1,7 @@
 """Sections of a scene: their keys, defaults and bounds."""
 
-from collections.abc import Iterator, Mapping
-from typing import Annotated, Any, ClassVar, Literal
+from collections.abc import Mapping
+from typing import Annotated, ClassVar, Literal
 
 from pydantic import BeforeValidator, Field, WithJsonSchema, field_validator, model_validator
 
@@ -49,10 +49,6 @@ class MaterialSection(Section):
     """Poisson's ratio."""
     hardness: _Hardness | None = None
     """Hardness of the softer body, the mean pressure at which contacts flow: says how far the elastic law holds."""
-
-    def __repr_args__(self) -> Iterator[tuple[str | None, Any]]:
-        """Yield keys and values, of which digests are made; hardness where it is given."""
-        yield from (each for each in super().__repr_args__() if each != ("hardness", None))
 
     @model_validator(mode="after")
     def _effective_or_youngs(self) -> "MaterialSection":

@@ -73,7 +73,7 @@ REFERENCE_VARIABLES = declare(
     ("reference_thermal_conductance", "W K-1", "thermal conductance by boundary elements"),
     ("reference_electrical_conductance", "S", "electrical conductance by boundary elements"),
     ("reference_error", "1", "estimated relative error of the force by boundary elements, by their grid"),
-    ("reference_area_error", "1", "estimated relative error of the contact area at given force, likewise"),
+    ("reference_area_error", "1", "estimated relative error of the contact area at given force, by the grid"),
 )
 """Variables of a law by boundary elements beside that of the asperities."""
 

@@ -153,7 +153,11 @@ RUN_DIAGNOSTICS = _diagnostics(
         "estimated standard deviation of the force at closest approach from patch to patch of this size, at the same "
         "separation, over the summed magnitudes of the forces of the contacts",
     ),
-    Diagnostic("area_sampling_error", "1", "that of the contact area from patch to patch, at the same force"),
+    Diagnostic(
+        "area_sampling_error",
+        "1",
+        "estimated standard deviation of the contact area from patch to patch, at the same force, over the area",
+    ),
     Diagnostic("trusted_separation", "m", "separation below which the error by interaction is above the trusted one"),
     Diagnostic(
         "edge_slope", "1", "largest slope of a profile at the edge of its contact", merge="maximum", unstated=0.0

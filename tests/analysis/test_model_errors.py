@@ -61,7 +61,7 @@ def test_the_separation_is_off_by_the_error_of_the_force_over_the_slope(result: 
     found = one.roughmdr.at_force(one.force.values[[30, 45]])[f"separation{MODEL_ERROR}"]
     np.testing.assert_allclose(found, errors / one.stiffness.values[[30, 45]], rtol=1e-6)
     force, h = one.force.values, one.separation.values
-    slope = np.diff(force)[[29, 44]] / np.diff(h)[[29, 44]]  # of the step that ends there
+    slope = np.diff(force)[[29, 44]] / np.diff(h)[[29, 44]]  # slope over the step that ends there
     found = one.drop_vars("stiffness").roughmdr.at_force(force[[30, 45]])[f"separation{MODEL_ERROR}"]
     np.testing.assert_allclose(found, errors / np.abs(slope), rtol=1e-6)
 
