@@ -187,9 +187,8 @@ def compare_adhering(task: tuple[int, int]) -> list[dict[str, Any]]:
     ensemble = case.generate()
     height = ensemble["height"].to_numpy()
     std = float(height.std())
-    work = (
-        math.exp(chance.uniform(math.log(0.02), math.log(0.4))) * std
-    ) ** 1.5  # [J/m2]: JKR stretches by about this share of std
+    stretch = math.exp(chance.uniform(math.log(0.02), math.log(0.4))) * std  # by JKR [m], about
+    work = stretch**1.5
     along = of_asperities(ensemble, np.array([0.15]))[0]
     path = np.linspace(height.max() + 2.0 * std, along, 2 * _STEPS)
     asked: dict[str, Any] = {"separation": path, "work": work, "unload": True, "effective_modulus": 1.0,
