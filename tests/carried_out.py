@@ -3,12 +3,13 @@
 import sys
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
-from contextlib import contextmanager, nullcontext
+from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from typing import NamedTuple
 from unittest.mock import patch
 
 import xarray as xr
+from studies import study as frame
 from studies.study import Study
 
 
@@ -23,8 +24,11 @@ class CarriedOut(NamedTuple):
 @contextmanager
 def carried_out(study: Study, folder: Path) -> Iterator[CarriedOut]:
     """Carry out the short form of a study, in this process also where the study has some of its own."""
-    module, pool = sys.modules[study.measure.__module__], "ProcessPoolExecutor"
-    with patch.object(module, pool, lambda *_, **__: ThreadPoolExecutor(1)) if hasattr(module, pool) else nullcontext():
+    pool = "ProcessPoolExecutor"
+    with ExitStack() as patches:
+        for module in (frame, sys.modules[study.measure.__module__]):
+            if hasattr(module, pool):
+                patches.enter_context(patch.object(module, pool, lambda *_, **__: ThreadPoolExecutor(1)))
         text = study.carry_out(folder, quick=True)
     with xr.open_dataset(folder / f"{study.name}.nc") as result:
         yield CarriedOut(text, folder, result)

@@ -5,14 +5,13 @@ JKR is from Dugdale's, from which the choice of model "auto" comes.
 """
 
 import math
-import warnings
 from typing import Any, Literal
 
 import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
 from scipy.stats import norm
-from studies.study import Study, named
+from studies.study import Study, named, without_limits
 
 import roughmdr as rm
 from roughmdr.aggregate.tabor import SHIFT
@@ -80,8 +79,7 @@ def rough(count: int) -> xr.Dataset:
 
 def measure(quick: bool) -> xr.Dataset:
     """Return all numbers of the figure."""
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", rm.LimitWarning)
+    with without_limits():
         result = xr.merge([pull_off(TABOR_NUMBERS[quick]), rough(ASPERITIES[quick])])
     return result.assign_attrs(**_MATERIAL, radius=RADIUS)
 

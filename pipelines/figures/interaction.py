@@ -1,11 +1,11 @@
 """The asperities of the first scene without adhesion, independent and coupled: force over separation, and its ratio."""
 
-import warnings
 from typing import Any
 
 import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
+from studies.comparison import law_of
 from studies.study import Study, named
 
 import roughmdr as rm
@@ -25,37 +25,23 @@ COLOURS = ("0.5", "#8a5fb0", "#1b6ca8", "#c8553d")
 
 def ensemble_of(count: int) -> xr.Dataset:
     """Return paraboloids at random, as dense as in the scene."""
-    return rm.generate(
-        {
-            "source": "random",
-            "shape": "paraboloid",
-            "count": count,
-            "patch": PATCH * (count / 2000) ** 0.5,
-            "placement": "random",
-            "height": {"distribution": "normal", "std": UM},
-            "radius": {"distribution": "lognormal", "mean": 50 * UM, "std": 5 * UM},
-        },
-        seed=2026,
-    )
+    section = {
+        "source": "random", "shape": "paraboloid", "placement": "random", "count": count,
+        "patch": PATCH * (count / 2000) ** 0.5,
+        "height": {"distribution": "normal", "std": UM},
+        "radius": {"distribution": "lognormal", "mean": 50 * UM, "std": 5 * UM},
+    }  # fmt: skip
+    return rm.generate(section, seed=2026)
 
 
 def measure(quick: bool) -> xr.Dataset:
     """Return force and contact fraction by each of ``MODELS``."""
     ensemble = ensemble_of(ASPERITIES[quick])
     separation = np.linspace(3.0 * UM, UM, 10 if quick else 40)
-    laws = []
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", rm.LimitWarning)
-        for interaction in MODELS.values():
-            law = rm.load_separation(
-                ensemble,
-                separation=separation,
-                effective_modulus=MODULUS,
-                variables=["force", "contact_fraction"],
-                interaction=interaction,
-            )
-            laws.append([law["force"].to_numpy(), law["contact_fraction"].to_numpy()])
-    force, fraction = np.moveaxis(np.array(laws), 1, 0)
+    names = ("force", "contact_fraction")
+    asked: dict[str, Any] = {"separation": separation, "effective_modulus": MODULUS, "variables": names}
+    laws = [law_of(ensemble, interaction=interaction, **asked) for interaction in MODELS.values()]
+    force, fraction = (np.array([law[name].to_numpy() for law in laws]) for name in names)
     over = ("model", "step")
     return xr.Dataset(
         {"force": (over, force, named("force", "N")), "contact_fraction": (over, fraction, named("contact fraction"))},

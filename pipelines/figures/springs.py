@@ -5,7 +5,6 @@ contact problems with and without adhesion", 2012. Errors are those at given ind
 """
 
 import itertools
-import warnings
 from typing import Any
 
 import numpy as np
@@ -13,7 +12,7 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
-from studies.study import Draw, Study, named
+from studies.study import Draw, Study, named, without_limits
 
 import roughmdr as rm
 from figures.drawing import COMPRESSED, STRETCHED, draw_axes, draw_body, draw_length, draw_springs
@@ -138,8 +137,7 @@ def errors(counts: NDArray[np.int64]) -> xr.Dataset:
 
 def measure(quick: bool) -> xr.Dataset:
     """Return all numbers of the figure; ``quick`` on short rows."""
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", rm.LimitWarning)  # both sides of each comparison suppose small slopes
+    with without_limits():  # both sides of each comparison suppose small slopes
         result = xr.merge([row_of_springs(), errors(QUICK if quick else COUNTS)])
     return result.assign_attrs(**_MATERIAL, radius=RADIUS)
 

@@ -6,8 +6,7 @@ batch; the naive rule, which stops as soon as the estimated error is small enoug
 """
 
 import math
-import warnings
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import xarray as xr
@@ -17,10 +16,7 @@ from roughmdr.batch.moments import Moments, MomentTree, block_moments
 from roughmdr.batch.stopping_rule import FIRST, next_count, relative_error
 from roughmdr.numerics.arguments import Floats
 from roughmdr.scene.sections import Accuracy
-from studies.study import Study, named, table
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
+from studies.study import Figure, Study, blank, named, table, without_limits
 
 
 def scene_of(count: int, height: dict[str, Any], work: float = 0.0) -> dict[str, Any]:
@@ -66,12 +62,8 @@ class ForceSamples(NamedTuple):
 
     def stop_as_a_batch(self, draws: np.ndarray, error: float) -> int:
         """Return how many of these draws a batch makes before it stops at ``error``."""
-        accuracy, moments, count, target = (
-            Accuracy(relative=error, max_realizations=len(draws)),
-            MomentTree[Moments](),
-            0,
-            FIRST,
-        )
+        accuracy, moments = Accuracy(relative=error, max_realizations=len(draws)), MomentTree[Moments]()
+        count, target = 0, FIRST
         while count < target:
             for first, block in block_moments(count, self.force[draws[count:target]]):
                 moments.add(first, block)
@@ -97,8 +89,7 @@ RULES = {"as in a batch": ForceSamples.stop_as_a_batch, "estimate small enough":
 
 def force_samples(name: str, realizations: int) -> ForceSamples:
     """Compute realisations of one of ``SCENES``."""
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", rm.LimitWarning)  # steep or not, the statistics are the same
+    with without_limits():  # steep or not, the statistics are the same
         result = rm.run({**SCENES[name], "batch": {"realizations": realizations}})
     return ForceSamples(result.force.to_numpy())
 
@@ -132,12 +123,11 @@ def measure(quick: bool) -> xr.Dataset:
     )
 
 
-def draw(result: xr.Dataset) -> "Figure":
+def draw(result: xr.Dataset) -> Figure:
     """Draw how many runs meet the error, and how many realisations they take over the minimal number."""
-    from matplotlib.figure import Figure
     from matplotlib.lines import Line2D
 
-    figure = Figure(figsize=(13, 5.6), layout="constrained")
+    figure = blank(13, 5.6)
     left, right = figure.subplots(1, 2)
     quantiles = (result.taken / result.minimal).quantile([0.05, 0.25, 0.5, 0.75, 0.95], "seed")
     for shift, colour, scene in zip((-0.22, 0.0, 0.22), ("#1b6ca8", "#c8553d", "#2e8b57"), SCENES, strict=True):

@@ -1,19 +1,14 @@
 """Our law beside another solution: laws along paths, numbers of all cases, errors, and how often a stated one holds."""
 
-import warnings
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import xarray as xr
 
 import roughmdr as rm
 from roughmdr.numerics.arguments import Floats
-from studies.study import named
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
+from studies.study import Axes, Figure, blank, named, without_limits
 
 Variable = tuple[tuple[str, ...], Floats, dict[str, str]]
 """Dimensions, values and attributes."""
@@ -21,12 +16,14 @@ FACTOR = 3.0
 """Largest ratio of the stated and the true error, either way, at which the stated one is near."""
 PAIRS: dict[int, Any] = {order: {"model": "pairwise", "order": order} for order in (1, 2)}
 """Interactions in pairs, by their order."""
+INTERACTIONS: dict[str, Any] = {
+    "independent": None, "mean field": "mean_field", **{f"order {order}": pairs for order, pairs in PAIRS.items()}
+}  # fmt: skip
 
 
 def law_of(ensemble: xr.Dataset, **asked: Any) -> xr.Dataset:
     """Return the law by roughmdr, without warnings; RoughmdrError where it has none."""
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", rm.LimitWarning)  # slopes and the like are no part of what is compared
+    with without_limits():
         return rm.load_separation(ensemble, **asked)
 
 
@@ -103,11 +100,9 @@ def held(error: Floats, stated: Floats, unknown: Floats | float = 0.0) -> Held:
     return Held(error.size, float(np.mean(bounded)), float(np.mean(near)))
 
 
-def panels(width: float, height: float, count: int) -> "tuple[Figure, list[Axes]]":
+def panels(width: float, height: float, count: int) -> tuple[Figure, list[Axes]]:
     """Return a figure of panels in a row, on a grid."""
-    from matplotlib.figure import Figure
-
-    figure = Figure(figsize=(width, height), layout="constrained")
+    figure = blank(width, height)
     row = list(np.atleast_1d(figure.subplots(1, count)))
     for panel in row:
         panel.grid(color="0.92")
@@ -115,7 +110,7 @@ def panels(width: float, height: float, count: int) -> "tuple[Figure, list[Axes]
     return figure, row
 
 
-def draw_stated(panel: "Axes", true: Floats, stated: Floats, groups: Mapping[str, Any]) -> None:
+def draw_stated(panel: Axes, true: Floats, stated: Floats, groups: Mapping[str, Any]) -> None:
     """Draw stated errors over true ones, by groups that masks choose, with the band in which they are to lie."""
     known = np.isfinite(true) & np.isfinite(stated)
     ends = np.array([0.5, 2.0]) * np.nanquantile(np.concatenate([true[known], stated[known]]), [0.0, 1.0])

@@ -4,10 +4,7 @@ Surfaces are asperities on a plane, and maps with their hills and summits.
 """
 
 import contextlib
-import warnings
-from concurrent.futures import ProcessPoolExecutor
-from multiprocessing import get_context
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import xarray as xr
@@ -16,22 +13,16 @@ import roughmdr as rm
 from roughmdr.elements.half_space import BoundaryElements
 from roughmdr.ensemble.maps.summits import find_summits
 from roughmdr.numerics.arguments import Floats
-from studies.comparison import PAIRS, in_cases, law_of, median_and_largest, panels
+from studies.comparison import INTERACTIONS, in_cases, law_of, median_and_largest, panels
 from studies.hills.maps import SIDE, MapCase, hills_of, square
-from studies.study import Study, table
+from studies.study import Figure, Study, in_two_processes, table, without_limits
 from studies.versus_bem.ensembles import SIZE, Case
 
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
-COUPLED = {f"order {order}": pairs for order, pairs in PAIRS.items()}
-MODELS: dict[str, Any] = {"independent": None, "mean field": "mean_field", **COUPLED}
 _MAP_POINTS = 16  # points of a map a shortest wave
 FRACTIONS = np.array([0.001, 0.003, 0.01, 0.03, 0.06, 0.1])
 """Contact fractions by boundary elements, about."""
 _SEARCHED, _COARSER = 16, 4  # separations at which these are looked for, on a grid so much coarser
 _DIFFERENCE = 0.02  # change of the separation, over the depth of the flat below the highest summit
-_WORKERS = 2
 _LAW = ("conductance_radius", "contact_fraction", "conductance_error", "overlap_fraction")
 _ELEMENTS = {
     "conductance_bem": ("conductance radius over the side, by boundary elements", "1"),
@@ -66,9 +57,9 @@ class Surface(NamedTuple):
     """[m]"""
 
     @property
-    def models(self) -> dict[str, Any]:
-        """Interactions of the asperities, by their names; hills need pairs."""
-        return COUPLED if self.group == "hills" else MODELS
+    def models(self) -> list[str]:
+        """Names of the interactions of the asperities; hills need pairs."""
+        return [name for name in INTERACTIONS if self.group != "hills" or name.startswith("order")]
 
 
 def of_asperities(case: Case) -> list[Surface]:
@@ -156,8 +147,7 @@ def numbers_of(surface: Surface, interaction: Any, control: str, values: Floats)
 
 def compare(case: Case | MapCase) -> list[dict[str, Any]]:
     """Return the numbers of the surfaces of a case; hills and summits are of one map."""
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", rm.LimitWarning)
+    with without_limits():
         found = surfaces(case)
     height = unit_height(found[0])
     along = separations(height)
@@ -171,9 +161,9 @@ def _by_models(surface: Surface, along: Floats, force: Floats) -> dict[str, list
     """Return the numbers of ``_MODELS`` by each model; NaN of those that are not asked for."""
     nothing = dict.fromkeys(_LAW, np.full(FRACTIONS.size, np.nan))
     laws: dict[str, list[Floats]] = {name: [] for name in _MODELS}
-    for name in MODELS:
+    for name, interaction in INTERACTIONS.items():
         at, under = (
-            numbers_of(surface, surface.models[name], control, values) if name in surface.models else nothing
+            numbers_of(surface, interaction, control, values) if name in surface.models else nothing
             for control, values in (("separation", along), ("force", force))
         )
         numbers = (*(at[key] for key in _LAW), under["conductance_radius"], under["conductance_error"])
@@ -184,10 +174,9 @@ def _by_models(surface: Surface, along: Floats, force: Floats) -> dict[str, list
 
 def measure(quick: bool) -> xr.Dataset:
     """Compare all surfaces, or a few of them on coarse grids."""
-    with ProcessPoolExecutor(_WORKERS, mp_context=get_context("spawn")) as pool:
-        found = [each for part in pool.map(compare, QUICK if quick else CASES) for each in part]
+    found = [each for part in in_two_processes(compare, QUICK if quick else CASES) for each in part]
     numbers = in_cases(_ELEMENTS, found, "case", "step") | in_cases(_MODELS, found, "case", "model", "step")
-    return xr.Dataset(numbers, {"model": list(MODELS), "group": ("case", [each["group"] for each in found])})
+    return xr.Dataset(numbers, {"model": list(INTERACTIONS), "group": ("case", [each["group"] for each in found])})
 
 
 def errors(result: xr.Dataset, name: str = "conductance") -> xr.DataArray:
@@ -208,7 +197,7 @@ def bounded(result: xr.Dataset, under_load: bool = False) -> xr.DataArray:
     return (error <= stated + grid_errors(result)).where(np.isfinite(error) & np.isfinite(stated))
 
 
-def draw(result: xr.Dataset) -> "Figure":
+def draw(result: xr.Dataset) -> Figure:
     """Draw the error at given separation and under given load over the contact fraction."""
     figure, (left, right) = panels(14, 4.8, 2)
     marks = dict(zip(GROUPS, "os^x", strict=True))

@@ -1,18 +1,14 @@
 """Sticky random surfaces that are loaded and unloaded, with asperities independent or coupled in pairs."""
 
 import math
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import xarray as xr
 
 import roughmdr as rm
 from studies.comparison import PAIRS, law_of, panels
-from studies.study import Study, named, table
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
+from studies.study import Axes, Figure, Study, named, table
 
 MODULUS = 2e6  # [Pa]
 WORK = 0.05  # [J/m2]
@@ -156,7 +152,7 @@ def beyond_pairs(result: xr.Dataset) -> xr.DataArray:
     return (result["marked"].sel(model="coupled") > 0).any("realization")
 
 
-def draw(result: xr.Dataset) -> "Figure":
+def draw(result: xr.Dataset) -> Figure:
     """Draw the change of the pull-off over distance and number of asperities, and the largest avalanches."""
     figure, (left, middle, right) = panels(12.5, 4.3, 3)
     pull_off = 100.0 * change(result, "pull_off_force")
@@ -199,7 +195,7 @@ def _usual(result: xr.Dataset, among: np.ndarray, name: str) -> str:
     return f"{float(result[name].to_numpy()[among][0]):g}"
 
 
-def _points(panel: "Axes", x: xr.DataArray, values: xr.DataArray, dense: np.ndarray, among: np.ndarray) -> None:
+def _points(panel: Axes, x: xr.DataArray, values: xr.DataArray, dense: np.ndarray, among: np.ndarray) -> None:
     """Draw mean and standard deviation over the realisations, a colour for each height spread."""
     spreads = np.unique(x["spread"].to_numpy()[among])
     for number, spread in enumerate(spreads.tolist()):

@@ -4,7 +4,7 @@ import math
 import time
 from collections.abc import Callable
 from functools import partial
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 from unittest.mock import patch
 
 import numpy as np
@@ -14,13 +14,10 @@ from oracles.boundary_elements import HeightMap
 
 from roughmdr.interaction import solve
 from roughmdr.numerics.arguments import Floats
-from studies.comparison import PAIRS, law_of, panels
-from studies.study import Study, named, table
+from studies.comparison import PAIRS, in_cases, law_of, panels
+from studies.study import Figure, Study, named, table
 from studies.versus_bem import without_grid
 from studies.versus_bem.ensembles import MODULUS, SIZE, Case, height_map, separations
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 FRACTIONS = np.array([0.01, 0.02, 0.03, 0.05])
 GRIDS = {False: (64, 128, 256, 512, 1024), True: (64, 128)}
@@ -29,6 +26,15 @@ COUNTS = {False: (100, 200, 300, 500, 1000, 3000, 10_000, 100_000), True: (100, 
 _MOST_DENSE = 3000
 _LOADS = np.geomspace(0.01, 0.03, 5)
 """Contact fractions on the way of a load whose time counts; the last is that of its force."""
+
+
+_POINT = {"error": ("largest relative error of the force", "1"), "seconds": ("run time of a load", "s")}
+_COST = {
+    "seconds_mesh": ("run time of a load, on a mesh", "s"),
+    "seconds_dense": ("run time of a load, pairs one by one", "s"),
+    "difference": ("relative difference of the forces", "1"),
+    "memory": ("largest memory of the process", "B"),
+}
 
 
 class Point(NamedTuple):
@@ -115,25 +121,11 @@ def measure(quick: bool) -> xr.Dataset:
     """Return the points of all methods, and the cost for each number of asperities in a process of one core."""
     points = compare(quick)
     costs = [in_new_process(cost, count, NUMBA_NUM_THREADS="1", OMP_NUM_THREADS="1") for count in COUNTS[quick]]
-    columns = {
-        "seconds_mesh": named("run time of a load, on a mesh", "s"),
-        "seconds_dense": named("run time of a load, pairs one by one", "s"),
-        "difference": named("relative difference of the forces"),
-        "memory": named("largest memory of the process", "B"),
-    }
-    return xr.Dataset(
-        {
-            "error": ("point", [point.error for point in points], named("largest relative error of the force")),
-            "seconds": ("point", [point.seconds for point in points], named("run time of a load", "s")),
-            **{name: ("asperities", values, columns[name])
-               for name, values in zip(columns, np.array(costs, dtype=float).T, strict=True)},
-        },
-        {
-            "method": ("point", [point.method for point in points]),
-            "setting": ("point", [point.setting for point in points]),
-            "asperities": ("asperities", np.array(COUNTS[quick], dtype=float), named("number of asperities")),
-        },
-    )  # fmt: skip
+    found = in_cases(_POINT, [point._asdict() for point in points], "point")
+    found |= in_cases(_COST, [dict(zip(_COST, each, strict=True)) for each in costs], "asperities")
+    words = {name: ("point", [getattr(point, name) for point in points]) for name in ("method", "setting")}
+    counts = ("asperities", np.array(COUNTS[quick], dtype=float), named("number of asperities"))
+    return xr.Dataset(found, {**words, "asperities": counts})
 
 
 def crossover(result: xr.Dataset) -> float:
@@ -145,7 +137,7 @@ def crossover(result: xr.Dataset) -> float:
     return float(beyond.min()) if beyond.size else float("inf")
 
 
-def draw(result: xr.Dataset) -> "Figure":
+def draw(result: xr.Dataset) -> Figure:
     """Draw the error of each method over its run time, and run times over the number of asperities."""
     figure, (left, right) = panels(12, 5.2, 2)
     names = result["method"].to_numpy()

@@ -4,7 +4,7 @@ Calls are counted in a process with NUMBA_DISABLE_JIT=1, where nothing is compil
 """
 
 import cProfile
-from typing import TYPE_CHECKING, Any
+from typing import Any
 from unittest.mock import patch
 
 import numpy as np
@@ -23,10 +23,7 @@ from roughmdr.runner.backend import Backend
 from roughmdr.runner.run import execute
 from roughmdr.scene import Scene, read
 from roughmdr.variables import CURVE_VARIABLES, DEFAULT_VARIABLES
-from studies.study import Study, named, table
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
+from studies.study import Figure, Study, blank, named, table
 
 SCENES: dict[str, dict[str, Any]] = {
     "loading": {"unload": False},
@@ -165,11 +162,9 @@ def texts(result: xr.Dataset) -> list[list[str]]:
     ]
 
 
-def draw(result: xr.Dataset) -> "Figure":
+def draw(result: xr.Dataset) -> Figure:
     """Draw how many times as much there is with each part forced on; no bar where there is nothing without."""
-    from matplotlib.figure import Figure
-
-    figure = Figure(figsize=(10, 0.34 * result.sizes["case"] + 1.2), layout="constrained")
+    figure = blank(10, 0.34 * result.sizes["case"] + 1.2)
     panel = figure.subplots()
     left, forced = result.counted.to_numpy().T
     ratio = forced / np.where(left > 0.0, left, forced)

@@ -1,17 +1,13 @@
 """Press realisations of surfaces of one spectrum as each source makes asperities of it."""
 
-import warnings
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import xarray as xr
 
 import roughmdr as rm
 from roughmdr.ensemble.spectral.section import SpectrumAsperities
-from studies.study import Study, named, table
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
+from studies.study import Figure, Study, blank, named, table, without_limits
 
 HURST = (0.3, 0.5, 0.8)
 SHARES = (2.5, 2.0, 1.5, 1.0)
@@ -53,20 +49,14 @@ def laws(hurst: float, realizations: int) -> dict[str, xr.Dataset]:
 
     hills = run(section, interaction=_PAIRS, reference={"model": "boundary_elements"})
     reference = {name: hills[f"reference_{name}"] for name in ("force", "contact_fraction")}
-    found = (
-        run(nayak),
-        run(nayak, interaction=_PAIRS),
-        run({**section, "model": "summits"}, interaction=_PAIRS),
-        hills,
-        xr.Dataset(reference),
-    )
+    summits = run({**section, "model": "summits"}, interaction=_PAIRS)
+    found = (run(nayak), run(nayak, interaction=_PAIRS), summits, hills, xr.Dataset(reference))
     return dict(zip(METHODS, found, strict=True))
 
 
 def measure(quick: bool) -> xr.Dataset:
     """Press surfaces of three Hurst exponents, many of each or a few."""
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", rm.LimitWarning)
+    with without_limits():
         found = [laws(hurst, QUICK if quick else REALIZATIONS) for hurst in HURST]
     over = ("hurst", "solver", "realization", "step")
     numbers = {
@@ -119,26 +109,18 @@ def report(result: xr.Dataset) -> str:
     )
 
 
-def draw(result: xr.Dataset) -> "Figure":
+def draw(result: xr.Dataset) -> Figure:
     """Draw the error of the mean force of each source over the contact fraction."""
-    from matplotlib.figure import Figure
-
     off, error = means(result)
-    figure = Figure(figsize=(12.0, 4.4), layout="constrained")
+    figure = blank(12.0, 4.4)
     panels = figure.subplots(1, result.sizes["hurst"], sharey=True)
     fraction = 100.0 * result["contact_fraction"].sel(solver=METHODS[-1]).mean("realization")
     for panel, hurst in zip(panels, result["hurst"].to_numpy(), strict=True):
         for method in METHODS[:-1]:
             at = {"hurst": hurst, "solver": method}
-            panel.errorbar(
-                fraction.sel(hurst=hurst).to_numpy(),
-                100.0 * off.sel(at).to_numpy(),
-                200.0 * error.sel(at).to_numpy(),
-                color=_COLOURS[method],
-                marker=_MARKERS[method],
-                capsize=3.0,
-                label=method,
-            )
+            style: dict[str, Any] = {"color": _COLOURS[method], "marker": _MARKERS[method], "label": method}
+            drawn = (fraction.sel(hurst=hurst), 100.0 * off.sel(at), 200.0 * error.sel(at))
+            panel.errorbar(*(each.to_numpy() for each in drawn), capsize=3.0, **style)
         panel.axhline(0.0, color="k", lw=0.8)
         panel.set(xscale="log", xlabel="contact fraction [%]", title=f"Hurst exponent {hurst:g}")
     panels[0].set_ylabel("mean force over boundary elements, less 1 [%]")

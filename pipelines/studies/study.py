@@ -1,20 +1,29 @@
 """The framework of a study or a figure: measure into NAME.nc, draw PNG files, and report in Markdown."""
 
-from collections.abc import Callable
+import warnings
+from collections.abc import Callable, Iterable, Iterator
+from concurrent.futures import ProcessPoolExecutor
+from contextlib import contextmanager
+from multiprocessing import get_context
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple, TypeAlias
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
 
 import xarray as xr
 
+from roughmdr.errors import LimitWarning
 from roughmdr.storage.files import replace_atomically
 from roughmdr.storage.labelled import Labelled
 from roughmdr.storage.netcdf_writing import write_netcdf
 from roughmdr.storage.result_file import provenance
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
+else:  # matplotlib is loaded where something is drawn
+    Axes = Figure = Any
 
-Draw: TypeAlias = "Callable[[xr.Dataset], Figure]"
+__all__ = ["Axes", "Draw", "Figure", "Study", "blank", "in_two_processes", "named", "table", "without_limits"]
+Draw: TypeAlias = Callable[[xr.Dataset], Figure]
 REDUCED = "Reduced form: "
 """Begins the line of a report that says what its study leaves out."""
 
@@ -27,7 +36,7 @@ class Study(NamedTuple):
     title: str
     measure: Callable[[bool], xr.Dataset]
     """Return all numbers; a reduced form, in seconds, where the argument is true."""
-    draw: "Draw | dict[str, Draw]"
+    draw: Draw | dict[str, Draw]
     """The picture NAME.png, or several pictures by their names."""
     report: Callable[[xr.Dataset], str]
     """Return a few sentences and tables in Markdown."""
@@ -49,6 +58,27 @@ class Study(NamedTuple):
                 figure.text(0.5, 0.0, words, ha="center", va="top", color="tab:red")  # below all that is drawn
                 figure.savefig(temporary, dpi=160, format="png", bbox_inches="tight" if quick else None)
         return "\n\n".join(filter(None, (f"## {self.title}", words, self.report(result).strip()))) + "\n"
+
+
+def in_two_processes(function: Callable[[Any], Any], items: Iterable[Any], chunksize: int = 1) -> list[Any]:
+    """Return what a function makes of each item, in two processes that begin anew."""
+    with ProcessPoolExecutor(2, get_context("spawn")) as pool:
+        return list(pool.map(function, items, chunksize=chunksize))
+
+
+@contextmanager
+def without_limits() -> Iterator[None]:
+    """Leave warnings unsaid of slopes and the like, which say nothing of the numbers that are compared."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", LimitWarning)
+        yield
+
+
+def blank(width: float, height: float) -> Figure:
+    """Return an empty figure of a size [inches]."""
+    from matplotlib import figure
+
+    return figure.Figure(figsize=(width, height), layout="constrained")
 
 
 def named(long_name: str, units: str = "1") -> dict[str, str]:

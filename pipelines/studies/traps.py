@@ -11,7 +11,7 @@ import tempfile
 from collections.abc import Iterator
 from contextlib import chdir
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import tomli_w
@@ -19,10 +19,7 @@ import xarray as xr
 from click.testing import CliRunner
 
 from roughmdr.cli import main
-from studies.study import Study
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
+from studies.study import Figure, Study, blank
 
 COUNT, QUICK_COUNT = 300, 40
 KINDS = ("unit", "sign", "reversed path", "missing counter body")
@@ -140,14 +137,9 @@ def measure(quick: bool) -> xr.Dataset:
     count = QUICK_COUNT if quick else COUNT
     with tempfile.TemporaryDirectory() as name, chdir(name):
         found = [(trap.kind, *spring(trap, Path(os.curdir).resolve())) for trap in traps(count)]
-    kind, exit_status, outcome, trusted, fraction, error = zip(*found, strict=True)
-    columns = {
-        "kind": list(kind), "exit_status": list(exit_status), "outcome": list(outcome), "trusted": list(trusted),
-        "contact_fraction": list(fraction), "model_error": list(error),
-    }  # fmt: skip
-    result = xr.Dataset({name: ("trap", np.array(column)) for name, column in columns.items()})
-    result["trusted"] = result.trusted.astype(np.int8)
-    return result
+    columns = zip(("kind", *Outcome._fields), zip(*found, strict=True), strict=True)
+    result = xr.Dataset({name: ("trap", np.array(column)) for name, column in columns})
+    return result.assign(trusted=result.trusted.astype(np.int8))
 
 
 def violations(found: xr.Dataset) -> tuple[int, int]:
@@ -156,11 +148,9 @@ def violations(found: xr.Dataset) -> tuple[int, int]:
     return int(full.sum()), int((found.trusted == 0).sum())
 
 
-def draw(found: xr.Dataset) -> "Figure":
+def draw(found: xr.Dataset) -> Figure:
     """Draw how the traps of each kind end."""
-    from matplotlib.figure import Figure
-
-    figure = Figure(figsize=(8.0, 3.0), layout="constrained")
+    figure = blank(8.0, 3.0)
     axes = figure.subplots()
     left = np.zeros(len(KINDS))
     for outcome, colour in zip(OUTCOMES, ("tab:blue", "tab:orange", "tab:red", "0.7"), strict=True):

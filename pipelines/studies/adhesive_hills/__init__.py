@@ -1,6 +1,6 @@
 """Press maps and pull them off by each method along the same path."""
 
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import xarray as xr
@@ -10,11 +10,7 @@ from studies.adhesive_hills.cases import CASES, QUICK, Adhesive, Case, Law
 from studies.adhesive_hills.stated import FEW, MAPS, measure_stated, report_stated
 from studies.comparison import in_cases, panels, rms
 from studies.hills.maps import SIDE
-from studies.study import Study, table
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
+from studies.study import Axes, Figure, Study, table
 
 METHODS = ("summits", "summits in pairs", "hills", "hills in pairs", "hills, Dugdale")
 ELEMENTS = ("elements", "coarse grid", "longer range")
@@ -159,7 +155,7 @@ more than 2 % off:
 """
 
 
-def _curves(panel: "Axes", case: xr.Dataset, way: slice, title: str) -> None:
+def _curves(panel: Axes, case: xr.Dataset, way: slice, title: str) -> None:
     """Draw the force of one way over the separation, over the largest tension of boundary elements."""
     separation = 1e9 * case["separation"].to_numpy()[way]
     force = case["force"] / -case["force"].sel(source="elements").min()
@@ -170,7 +166,7 @@ def _curves(panel: "Axes", case: xr.Dataset, way: slice, title: str) -> None:
     panel.set(xlabel="separation [nm]", ylabel="force over pull-off force of elements", title=title)
 
 
-def _pull_off(panel: "Axes", result: xr.Dataset) -> None:
+def _pull_off(panel: Axes, result: xr.Dataset) -> None:
     """Draw the pull-off force of each method over that of boundary elements."""
     cases = [result.isel(case=i) for i in range(result.sizes["case"])]
     for k, name in enumerate(METHODS):
@@ -185,7 +181,7 @@ def _pull_off(panel: "Axes", result: xr.Dataset) -> None:
     panel.set(ylabel="pull-off force over that of elements", title="Map and jump-on radius over wavelength")
 
 
-def draw(result: xr.Dataset) -> "Figure":
+def draw(result: xr.Dataset) -> Figure:
     """Draw the force of one map over the separation both ways, and the pull-off forces of all."""
     figure, (left, middle, right) = panels(16, 6.0, 3)
     case = result.isel(case=_SHOWN)

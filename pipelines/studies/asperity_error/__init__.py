@@ -2,9 +2,6 @@
 
 import contextlib
 import math
-import warnings
-from concurrent.futures import ProcessPoolExecutor
-from multiprocessing import get_context
 from typing import NamedTuple
 
 import numpy as np
@@ -21,7 +18,7 @@ from roughmdr.kernels.profile.layout import COUNT, FOOT, TOP
 from roughmdr.loading.staircase import staircase
 from roughmdr.shapes import SHAPES, Shape
 from studies.asperity_error.asperities import DRAW, Rng, power_of_ten
-from studies.study import Study, named, table
+from studies.study import Study, in_two_processes, named, table, without_limits
 
 NEAREST = 1e-12
 """Smallest distance to a fold, over its depth."""
@@ -29,7 +26,7 @@ _PRESSED = 1e3  # depths beyond first touch, to which some are pressed first
 _MIN_FORCE = 1e-290
 _TRIES = 50
 ASPERITIES, QUICK = 100_000, 480
-_WORKERS, _GROUP_SIZE = 2, 100
+_GROUP_SIZE = 100
 _WEIGHT = {"tabulated": 0.2}  # share of cases of a shape, else 1: its reference is slow
 _MODELS = ("none", "JKR")
 COLUMNS = {
@@ -163,8 +160,7 @@ class _Subject:
 def random_error(kind: str, adhesive: bool, seed: int) -> ForceError:
     """Return the error of a random asperity, with JKR adhesion or without; skip what floats cannot hold."""
     rng = np.random.default_rng([list(SHAPES).index(kind), adhesive, seed])
-    with warnings.catch_warnings(), np.errstate(all="ignore"):
-        warnings.simplefilter("ignore", rm.LimitWarning)
+    with without_limits(), np.errstate(all="ignore"):
         for _ in range(_TRIES):
             with contextlib.suppress(rm.RoughmdrError):
                 if (found := _draw(rng, kind, adhesive)) is not None:
@@ -211,8 +207,7 @@ def rows_of(group: Group) -> list[tuple[str, int, int, float, float, float]]:
 
 def measure(quick: bool) -> xr.Dataset:
     """Return the errors of all asperities, from two processes."""
-    with ProcessPoolExecutor(_WORKERS, get_context("spawn")) as pool:
-        rows = [row for part in pool.map(rows_of, groups(QUICK if quick else ASPERITIES)) for row in part]
+    rows = [row for part in in_two_processes(rows_of, groups(QUICK if quick else ASPERITIES)) for row in part]
     columns = zip(COLUMNS.items(), zip(*rows, strict=True), strict=True)
     return xr.Dataset({name: ("asperity", np.array(values), attributes) for (name, attributes), values in columns})
 

@@ -5,14 +5,12 @@ infinite number, no exception but a refusal, force and area monotone where physi
 as small as it can be, and raised as TOML.
 """
 
-import multiprocessing
 import tempfile
 import time
 from collections import Counter
-from concurrent.futures import ProcessPoolExecutor
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -21,10 +19,7 @@ from hypothesis import HealthCheck, Phase, given, seed, settings
 from roughmdr.shapes import SCENE_SHAPES
 from studies.random_scenes.judge import OUTCOMES, judge
 from studies.random_scenes.scenes import scenes, write_inputs
-from studies.study import Study, named, table
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
+from studies.study import Figure, Study, blank, in_two_processes, named, table
 
 SEEDS = (2026, 2027)
 """One for each process."""
@@ -70,8 +65,7 @@ def measure(quick: bool) -> xr.Dataset:
     with tempfile.TemporaryDirectory() as folder:
         write_inputs(Path(folder))
         search_part = partial(search, count=each, folder=Path(folder), cohesive=cohesive)
-        with ProcessPoolExecutor(len(SEEDS), multiprocessing.get_context("spawn")) as pool:
-            records = [record for part in pool.map(search_part, SEEDS) for record in part]
+        records = [record for part in in_two_processes(search_part, SEEDS) for record in part]
     *words, comparisons, seconds = ([*column] for column in zip(*records, strict=True))
     return xr.Dataset(
         {
@@ -82,11 +76,9 @@ def measure(quick: bool) -> xr.Dataset:
     )
 
 
-def draw(result: xr.Dataset) -> "Figure":
+def draw(result: xr.Dataset) -> Figure:
     """Draw a bar of outcomes for each shape of the asperities, adhesion, source and estimator."""
-    from matplotlib.figure import Figure
-
-    figure = Figure(figsize=(12.5, 6.2), layout="constrained")
+    figure = blank(12.5, 6.2)
     panels = figure.subplot_mosaic([["shape", kind] for kind in KINDS[1:]])
     for kind, panel in panels.items():
         names = np.unique(result[kind])

@@ -12,7 +12,7 @@ import math
 from collections import Counter
 from concurrent.futures import ProcessPoolExecutor
 from multiprocessing import get_context
-from typing import TYPE_CHECKING, Any, Literal
+from typing import Any, Literal
 
 import numpy as np
 import xarray as xr
@@ -28,11 +28,7 @@ from studies.stability.crowding import Steps, crowded, crowds
 from studies.stability.judge import MODELS, OUTCOMES, REFUSED, WRONG, Verdict, verdicts
 from studies.stability.metamorphic import KINDS, checks
 from studies.stability.metamorphic import QUICK as QUICK_KINDS
-from studies.study import Study, named, table
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
+from studies.study import Axes, Figure, Study, blank, named, table
 
 FULL, QUICK = {"elastic": 512, "jkr": 512, "dugdale": 128}, {"elastic": 16, "jkr": 16, "dugdale": 4}
 """Number of cases for each model, from the beginning of one sequence."""
@@ -161,15 +157,14 @@ def worst_in(result: xr.Dataset, one: str, other: str, values: Any) -> Any:
     return grid
 
 
-def draw(result: xr.Dataset) -> "Figure":
+def draw(result: xr.Dataset) -> Figure:
     """Draw the worst error below the diagonal, equilibria evaluated above it, on it the outcomes along each axis."""
     from matplotlib.cm import ScalarMappable
     from matplotlib.colors import LogNorm
-    from matplotlib.figure import Figure
     from matplotlib.patches import Patch
 
     names, ends = list(AXES), (-0.5, 0.5 * CELLS - 0.5, CELLS - 0.5)
-    figure = Figure(figsize=(15, 13.5), layout="constrained")
+    figure = blank(15, 13.5)
     panels = figure.subplots(len(names), len(names))
     excess = LogNorm(1e-2, 1.0)
     evaluated = LogNorm(1.0, max(2.0, float(np.nanmax(result.tried, initial=2.0))))
@@ -205,7 +200,7 @@ def _ticks(name: str) -> list[str]:
     return [f"{AXES[name].at(part):.3g}" for part in (0.0, 0.5, 1.0)]
 
 
-def _draw_errors(panel: "Axes", result: xr.Dataset, one: str, other: str, excess: Any) -> None:
+def _draw_errors(panel: Axes, result: xr.Dataset, one: str, other: str, excess: Any) -> None:
     """Draw the worst error in each cell; over it where answers are wrong, under it where they are refused."""
     from matplotlib.colors import ListedColormap
 
@@ -217,7 +212,7 @@ def _draw_errors(panel: "Axes", result: xr.Dataset, one: str, other: str, excess
     panel.imshow(np.maximum(worst, excess.vmin), cmap="YlOrBr", norm=excess, zorder=1, **_CELLS)
 
 
-def _draw_outcomes(panel: "Axes", result: xr.Dataset, name: str) -> None:
+def _draw_outcomes(panel: Axes, result: xr.Dataset, name: str) -> None:
     """Draw the fraction of each outcome along an axis."""
     answers = result.answers.sum("law").to_numpy()
     count = np.zeros((CELLS, answers.shape[1]))

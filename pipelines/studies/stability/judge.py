@@ -2,7 +2,6 @@
 
 import math
 import re
-import warnings
 from collections.abc import Sequence
 from typing import Any, NamedTuple
 
@@ -14,6 +13,7 @@ from oracles.promises import Judged, Results, judge, judge_dugdale, natural_scal
 
 import roughmdr as rm
 from studies.stability.cases import Case
+from studies.study import without_limits
 
 MODELS = ("elastic", "jkr", "dugdale")
 OUTCOMES = RIGHT, REFUSED, WRONG = ("right", "refused", "wrong")
@@ -123,8 +123,7 @@ def verdicts(case: Case, model: str) -> list[Verdict]:
     given: dict[str, Any] = {
         "effective_modulus": case.effective_modulus, "work": 0.0 if model == "elastic" else case.work
     }  # fmt: skip
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", rm.LimitWarning)  # steep slopes have right results too
+    with without_limits():  # steep slopes have right results too
         if dugdale:
             try:
                 given["strength"] = case.tabor / rm.tabor(shapes[0], **given, strength=1.0)

@@ -1,7 +1,6 @@
 """Changes of a problem that must leave the result as it is, or change it in a known way, whatever the result is."""
 
 import math
-import warnings
 from collections.abc import Iterator
 from typing import Any
 
@@ -15,6 +14,7 @@ from roughmdr.ensemble.ensemble import Ensemble
 from roughmdr.kernels.adhesion import Adhesion
 from roughmdr.numerics.arguments import Floats
 from roughmdr.shapes import SHAPES, Shape
+from studies.study import without_limits
 
 MODULUS, WORK, TABOR = 4.1e6, 0.047, 1.3  # a soft rubber [Pa], [J/m^2]; neither DMT nor JKR is right
 KINDS: dict[str, dict[str, float]] = {
@@ -117,8 +117,7 @@ def checks(quick: bool) -> list[tuple[str, str, str, float, float]]:
     kinds = [kind for kind in KINDS if not quick or kind in QUICK]
     pairs = [(model, kind) for model in ("elastic", "jkr") for kind in kinds]
     pairs += [("dugdale", kind) for kind in kinds if kind in COHESIVE]
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", rm.LimitWarning)
+    with without_limits():
         return [(name, *pair, error, allowed) for pair in pairs for name, error, allowed in _checks(*pair)]
 
 

@@ -4,12 +4,9 @@ The scenes are run, and their forces are computed again at least ten times finer
 with 60 digits from the slopes of the profiles, the expected force by quadrature.
 """
 
-import warnings
-from concurrent.futures import ProcessPoolExecutor
 from functools import cache
 from itertools import product
-from multiprocessing import get_context
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
@@ -24,10 +21,7 @@ from studies.comparison import draw_stated, panels
 from studies.stated_error.contacts import ContactPath, contact_path
 from studies.stated_error.expected import ORDERS, ExpectedForce
 from studies.stated_error.scenes import ADHESIONS, ESTIMATORS, RandomScene, scene
-from studies.study import Study, named, table
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
+from studies.study import Figure, Study, in_two_processes, named, table, without_limits
 
 SCENES, QUICK = 200, 60
 FINER = 10.0
@@ -35,7 +29,6 @@ FINER = 10.0
 HONEST = 0.99
 """The share of scenes whose true error is to be below the stated one."""
 _MIN_ERROR = 1e-17  # where errors of 0 are drawn
-_WORKERS = 2
 
 
 class Judged(NamedTuple):
@@ -54,8 +47,7 @@ class Judged(NamedTuple):
 
 def judge(drawn: RandomScene, disturbance: float = 0.0) -> Judged:
     """Run a scene and compute it again; all forces of the run are off by ``disturbance`` times its stated error."""
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", rm.LimitWarning)  # steep or not, the numbers are the same
+    with without_limits():  # steep or not, the numbers are the same
         result = rm.run(drawn.table)
     if (result.status != 0).any():
         return Judged(np.nan, np.nan, str(result.remark.values.ravel()[0]))
@@ -114,8 +106,7 @@ def expected_force(scene: Scene, separation: Floats, stated: float) -> Floats:
 def measure(quick: bool) -> xr.Dataset:
     """Judge all scenes, on two processes."""
     drawn = [scene(number) for number in range(QUICK if quick else SCENES)]
-    with ProcessPoolExecutor(_WORKERS, get_context("spawn")) as pool:
-        return as_dataset(drawn, list(pool.map(judge, drawn, chunksize=4)))
+    return as_dataset(drawn, in_two_processes(judge, drawn, chunksize=4))
 
 
 def as_dataset(drawn: list[RandomScene], judged: list[Judged]) -> xr.Dataset:
@@ -139,7 +130,7 @@ def as_dataset(drawn: list[RandomScene], judged: list[Judged]) -> xr.Dataset:
     )
 
 
-def draw(result: xr.Dataset) -> "Figure":
+def draw(result: xr.Dataset) -> Figure:
     """Draw the stated error of each scene over the true one."""
     figure, (panel,) = panels(7.2, 6.0, 1)
     true, stated = (np.maximum(result[name].to_numpy(), _MIN_ERROR) for name in ("true_error", "stated_error"))

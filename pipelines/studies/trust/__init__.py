@@ -2,10 +2,9 @@
 
 import math
 import tempfile
-import warnings
 from contextlib import chdir
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import tomli_w
@@ -17,16 +16,13 @@ from roughmdr.cli import main
 from roughmdr.numerics.arguments import Floats
 from roughmdr.scene import read
 from studies.comparison import FACTOR, bounds, draw_stated, in_cases, panels
-from studies.study import Study, table
+from studies.study import Figure, Study, table, without_limits
 from studies.trust.samples import CASES as SURFACES
 from studies.trust.samples import measure_samples, report_samples
 from studies.trust.scenes import CASES, QUICK, Case
 from studies.trust.truth import MAPS, by_boundary_elements, by_pairs, by_range_of_adhesion, of_map
 from studies.trust.truth import Path as FlatPath
 from studies.versus_bem.ensembles import side, write_map
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 _TOLD = ("contact", "model error", "trust", "warning")
 _NAMES = {
@@ -111,8 +107,7 @@ def _ensemble(file: Path) -> xr.Dataset:
 def measure(quick: bool) -> xr.Dataset:
     """Carry out all scenes, or a few small ones."""
     cases = [case for case in CASES if not quick or case.name in QUICK]
-    with tempfile.TemporaryDirectory() as name, chdir(name), warnings.catch_warnings():
-        warnings.simplefilter("ignore", rm.LimitWarning)
+    with tempfile.TemporaryDirectory() as name, chdir(name), without_limits():
         found = [carry_out(case, Path(name)) for case in cases]
     words = {name: ("scene", [getattr(case, name) for case in cases]) for name in ("name", "oracle", "changes")}
     printed = {"printed": ("scene", [each["printed"] for each in found])}
@@ -124,7 +119,7 @@ def errors(result: xr.Dataset) -> Floats:
     return np.asarray(np.abs(1.0 - result["force"] / result["true_force"]))
 
 
-def draw(result: xr.Dataset) -> "Figure":
+def draw(result: xr.Dataset) -> Figure:
     """Draw the model error over the true error, a point a scene."""
     figure, (panel,) = panels(7.2, 6.0, 1)
     error, stated, oracle = errors(result), result["model_error"].to_numpy(), result["oracle"].to_numpy()

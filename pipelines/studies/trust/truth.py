@@ -12,9 +12,9 @@ import xarray as xr
 from oracles.boundary_elements import HeightMap
 from oracles.pairwise import Paraboloids, periodic_green
 
-import roughmdr as rm
 from roughmdr.aggregate.tabor import ASSUMED_RANGE
 from roughmdr.numerics.arguments import Floats
+from studies.comparison import law_of
 from studies.trust.scenes import Surface
 from studies.versus_bem.ensembles import distances, height_map, side
 
@@ -70,15 +70,8 @@ def by_range_of_adhesion(ensemble: xr.Dataset, modulus: float, work: float, path
     """
 
     def force(**range_of_adhesion: Any) -> float:
-        law = rm.load_separation(
-            ensemble,
-            separation=path.separation[: path.closest + 1],
-            effective_modulus=modulus,
-            work=work,
-            variables=["force"],
-            **range_of_adhesion,
-        )
-        return float(law["force"][-1])
+        asked = {"effective_modulus": modulus, "work": work, "variables": "force", **range_of_adhesion}
+        return float(law_of(ensemble, separation=path.separation[: path.closest + 1], **asked)["force"][-1])
 
     return force(adhesion="dugdale", range=ASSUMED_RANGE) - force()
 

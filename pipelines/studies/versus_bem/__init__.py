@@ -6,10 +6,7 @@ Asperities are independent, displaced by the mean pressure, or coupled in pairs 
 import itertools
 import math
 import time
-import warnings
-from concurrent.futures import ProcessPoolExecutor
-from multiprocessing import get_context
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -19,8 +16,8 @@ from oracles.boundary_elements import HeightMap, by_perimeter, label_contacts, o
 import roughmdr as rm
 from roughmdr.model_error.interaction import ASPERITIES, SUMMITS, interaction_error
 from roughmdr.numerics.arguments import Floats
-from studies.comparison import HELD, PAIRS, held, in_cases, law_or_nan, median_and_largest, panels
-from studies.study import Study, named, table
+from studies.comparison import HELD, INTERACTIONS, held, in_cases, law_or_nan, median_and_largest, panels
+from studies.study import Figure, Study, in_two_processes, named, table, without_limits
 from studies.versus_bem.ensembles import (
     CASES,
     FINE,
@@ -34,16 +31,11 @@ from studies.versus_bem.ensembles import (
     separations,
 )
 
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
 FRACTIONS = np.array([0.001, 0.003, 0.01, 0.03, 0.05, 0.1, 0.2, 0.3])
 _FINE_FRACTION = 0.1  # the largest contact fraction on the finest grids
-MODELS: dict[str, Any] = {
-    "force": None, "force_mean": "mean_field", "force_first": PAIRS[1], "force_second": PAIRS[2],
-}  # fmt: skip
+MODELS = dict(zip(("force", "force_mean", "force_first", "force_second"), INTERACTIONS.values(), strict=True))
 """Interactions, by the names of their forces."""
-_LABELS = dict(zip(MODELS, ("independent", "mean field", "order 1", "order 2"), strict=True))
+_LABELS = dict(zip(MODELS, INTERACTIONS, strict=True))
 GROUPS = ("few contacts", "random", "separated", "square", "nayak", "map", "crowd")
 FEW_CONTACTS = 4.0
 """Up to so many, contacts of the patch and of its periodic images are a lattice, wherever they are placed."""
@@ -52,7 +44,6 @@ _NEGLIGIBLE = 1e-4  # least error that is told apart from none
 _FINE_SEED = 11  # and above, of the cases on the finest grids
 _BINS = ((0.0, 0.004), (0.004, 0.03), (0.03, 0.15), (0.15, 1.0))
 _FINER_BINS = tuple(itertools.pairwise((0.0, 0.004, 0.03, 0.06, 0.15, 1.0)))
-_WORKERS = 2
 _NAMES = {
     "contact_fraction": ("summed contact area of independent asperities over the nominal area", "1"),
     "contact_count": ("contacts of independent asperities", "1"),
@@ -112,8 +103,7 @@ def touch(radius: Floats, distance: Floats) -> bool:
 
 def compare(case: Case | MapCase) -> dict[str, Floats]:
     """Return the numbers named in ``_NAMES`` at each contact fraction that the ensemble reaches."""
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", rm.LimitWarning)
+    with without_limits():
         ensemble, *maps = case.build()
     along = separations(ensemble, FRACTIONS[FRACTIONS <= _FINE_FRACTION] if case.points >= FINE else FRACTIONS)
     along = along[np.isfinite(along)]
@@ -146,8 +136,7 @@ def compare(case: Case | MapCase) -> dict[str, Floats]:
 def measure(quick: bool) -> xr.Dataset:
     """Compare all cases, or a few of them on coarse grids."""
     cases = QUICK if quick else CASES
-    with ProcessPoolExecutor(_WORKERS, mp_context=get_context("spawn")) as pool:
-        numbers = in_cases(_NAMES, list(pool.map(compare, cases)), "case", "step")
+    numbers = in_cases(_NAMES, in_two_processes(compare, cases), "case", "step")
     placement, shape, roughness = zip(*(case.labels for case in cases), strict=True)
     return xr.Dataset(
         numbers,
@@ -195,7 +184,7 @@ def groups(result: xr.Dataset) -> NDArray[np.str_]:
     return np.where(few, "few contacts", whole)
 
 
-def draw(result: xr.Dataset) -> "Figure":
+def draw(result: xr.Dataset) -> Figure:
     """Draw the error of independent asperities over the contact fraction with its estimate, and by interaction."""
     figure, (left, right) = panels(12, 5.2, 2)
     fraction, group = result["contact_fraction"].to_numpy(), groups(result)

@@ -4,20 +4,15 @@ Errors are those against many digits, of the force at given separations, the con
 times are those of a curve of 50 to 200 states. A method joins by a line in ``METHODS`` of tip.py or surface.py.
 """
 
-import warnings
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import xarray as xr
 
-import roughmdr as rm
-from studies.study import Study, named, table
+from studies.study import Figure, Study, blank, named, table, without_limits
 from studies.work_precision import surface, tip
 from studies.work_precision.points import QUANTITIES, Method, Reference
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 
 class Part(NamedTuple):
@@ -37,8 +32,7 @@ _COLOURS = [f"C{number}" for number in range(10)] + ["#1b1b1b", "#b8860b", "#3cb
 def measure(quick: bool) -> xr.Dataset:
     """Return the points of all methods on all scenes; quick without the last scene of each part."""
     found = []
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", rm.LimitWarning)  # all methods suppose the same
+    with without_limits():  # all methods suppose the same
         for part in PARTS:
             for title, scene in list(part.scenes.items())[: -1 if quick else None]:
                 exact = part.reference(scene, quick=quick)
@@ -116,12 +110,10 @@ def _unique(values: xr.DataArray) -> list[str]:
     return list(dict.fromkeys(values.to_numpy().tolist()))
 
 
-def draw(result: xr.Dataset) -> "Figure":
+def draw(result: xr.Dataset) -> Figure:
     """Draw for each scene the errors of the force, and of the pull-off force or area, a curve for each method."""
-    from matplotlib.figure import Figure
-
     scenes, handles = _unique(result.scene), dict[str, Any]()
-    figure = Figure(figsize=(4.0 * len(scenes), 8.6), layout="constrained")
+    figure = blank(4.0 * len(scenes), 8.6)
     panels = figure.subplots(2, len(scenes), squeeze=False)
     colours = dict(zip(_unique(result.method), _COLOURS, strict=False))
     for column, scene in zip(panels.T, scenes, strict=True):

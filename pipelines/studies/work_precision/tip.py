@@ -23,7 +23,7 @@ DEPTHS = np.append(np.geomspace(1e-3, 1.0, 20), np.geomspace(1.0, 11.0, 181)[1:]
 DIGITS = 70
 _DEEPEST = 50.0  # radius beyond the deepest contact, over that at the fold
 _MIN_RTOL = 1e-15  # about the least relative tolerance that brentq takes
-
+_MATERIAL: Any = {"effective_modulus": MODULUS, "work": WORK}
 Formula = Callable[[Floats], Floats]
 
 
@@ -39,17 +39,12 @@ class Tip(NamedTuple):
     @property
     def fold(self) -> float:
         """Radius [m] of pull-off under fixed grips."""
-        return float(
-            rm.pull_off(self.shape, effective_modulus=MODULUS, work=WORK, control="displacement").contact_radius
-        )
+        return float(rm.pull_off(self.shape, **_MATERIAL, control="displacement").contact_radius)
 
     @property
     def indentation(self) -> Floats:
         """The path [m]."""
-        depth = -float(
-            rm.pull_off(self.shape, effective_modulus=MODULUS, work=WORK, control="displacement").indentation
-        )
-        return depth * (DEPTHS - 1.0)
+        return -float(rm.pull_off(self.shape, **_MATERIAL, control="displacement").indentation) * (DEPTHS - 1.0)
 
 
 def _paraboloid(R: float) -> Tip:
@@ -112,15 +107,14 @@ def reference(tip: Tip, *, quick: bool) -> Reference:
 
 def by_package(tip: Tip, shape: Shape) -> Curve:
     """Compute by the package, for a shape."""
-    state = rm.indent(shape, effective_modulus=MODULUS, work=WORK, indentation=tip.indentation)
-    off = rm.pull_off(shape, effective_modulus=MODULUS, work=WORK, control="force")
+    state = rm.indent(shape, **_MATERIAL, indentation=tip.indentation)
+    off = rm.pull_off(shape, **_MATERIAL, control="force")
     return Curve(state.force.to_numpy(), state.contact_area.to_numpy(), DEPTHS.size + 1, float(off.force))
 
 
 def by_springs(tip: Tip, count: int) -> Curve:
     """Compute by a row of springs for each indentation, and by one under dead load."""
-    method: Any = {"method": "springs", "springs": count}
-    state = rm.indent(tip.shape, effective_modulus=MODULUS, work=WORK, indentation=tip.indentation, **method)
+    state = rm.indent(tip.shape, **_MATERIAL, indentation=tip.indentation, method="springs", springs=count)
     pull_off = Springs.of(tip.shape, MODULUS, WORK, count).pull_off_force()
     return Curve(state.force.to_numpy(), state.contact_area.to_numpy(), (DEPTHS.size + 1) * count, pull_off)
 
@@ -170,7 +164,7 @@ def by_quadrature(tip: Tip, nodes: float) -> Callable[[], Curve]:
 
 def by_table(tip: Tip, points: float) -> Callable[[], Curve]:
     """Prepare the profile as a table, to 1.5 times the largest contact radius."""
-    farthest = rm.indent(tip.shape, effective_modulus=MODULUS, work=WORK, indentation=float(tip.indentation[-1]))
+    farthest = rm.indent(tip.shape, **_MATERIAL, indentation=float(tip.indentation[-1]))
     r = np.linspace(0.0, 1.5 * float(farthest.contact_radius), int(points))
     return partial(by_package, tip, rm.Tabulated(r, tip.shape.f(r)))
 
