@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from roughmdr.analysis.apply import over
 from roughmdr.numerics.arguments import Floats
 from roughmdr.result.curves import Branch, alone, curve, result_of, separation_of
 from roughmdr.variables import BRANCHES, LATERAL
@@ -38,17 +39,7 @@ def hysteresis(dataset: "xr.Dataset") -> "xr.Dataset":
     force = alone(curve(result, "tangential_force" if lateral else "force", "hysteresis needs"))
     separation = -alone(curve(result, LATERAL.name, "")) if lateral else alone(separation_of(result))
     loading, unloading = (Branch(result, branch).wanted[1:] for branch in BRANCHES)
-    energies = xr.apply_ufunc(
-        _energies,
-        force,
-        separation,
-        kwargs={"loading": loading, "unloading": unloading},
-        input_core_dims=[["step"], ["step"]],
-        output_core_dims=[[]] * 6,
-        keep_attrs=False,
-        dask="parallelized",
-        output_dtypes=[np.float64] * 6,
-    )
+    energies = over("step", _energies, force, separation, parts=6, loading=loading, unloading=unloading)
     found: dict[str, xr.DataArray] = {}
     names = _LATERAL_NAMES if lateral else _NAMES
     for (name, long_name), value, error in zip(names.items(), energies[::2], energies[1::2], strict=True):

@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from roughmdr.analysis.apply import over
 from roughmdr.batch.moments import mean_and_error
 from roughmdr.errors import StoreError
 from roughmdr.numerics.arguments import Floats
@@ -44,24 +45,13 @@ def fit_power_law(dataset: "xr.Dataset", y: str, x: str, branch: str, between: B
     import xarray as xr
 
     result = result_of(dataset)
-    along, over = (alone(curve(result, name, asked)) for name, asked in ((y, "y is"), (x, "x is")))
-    both = {"y": along.attrs.get("units", "1"), "x": over.attrs.get("units", "1")}
+    along, abscissa = (alone(curve(result, name, asked)) for name, asked in ((y, "y is"), (x, "x is")))
+    both = {"y": along.attrs.get("units", "1"), "x": abscissa.attrs.get("units", "1")}
     low, high = (0.0, np.inf) if between is None else _ends(between, both["x"])
-    kwargs = {"chosen": _chosen(result, branch), "low": low, "high": high}
-    sums = xr.apply_ufunc(
-        _sums,
-        over,
-        along,
-        kwargs=kwargs,
-        input_core_dims=[["step"], ["step"]],
-        output_core_dims=[[]] * len(_Sums._fields),
-        keep_attrs=False,
-        dask="parallelized",
-        output_dtypes=[np.float64] * len(_Sums._fields),
-    )
+    chosen, parts = _chosen(result, branch), len(_Sums._fields)
+    sums = over("step", _sums, abscissa, along, parts=parts, chosen=chosen, low=low, high=high)
     if "realization" not in sums[0].dims:
         sums = tuple(each.expand_dims("realization", axis=-1) for each in sums)
-    sums = tuple(each if each.chunks is None else each.chunk(realization=-1) for each in sums)
     names = {
         "exponent": ("1", f"exponent n of {y} = c ({x}/x0)^n"),
         "exponent_error": ("1", "standard error of the exponent"),
@@ -71,15 +61,7 @@ def fit_power_law(dataset: "xr.Dataset", y: str, x: str, branch: str, between: B
         "rms_residual": ("1", f"root mean square of the misfit in log {y}: relative"),
         "points": ("1", "number of points"),
     }
-    fitted = xr.apply_ufunc(
-        _fit,
-        *sums,
-        input_core_dims=[["realization"]] * len(sums),
-        output_core_dims=[[]] * len(names),
-        keep_attrs=False,
-        dask="parallelized",
-        output_dtypes=[np.float64] * len(names),
-    )
+    fitted = over("realization", _fit, *sums, parts=len(names))
     data = {
         name: array.assign_attrs(units=units, long_name=long_name)
         for (name, (units, long_name)), array in zip(names.items(), fitted, strict=True)

@@ -4,6 +4,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from roughmdr.analysis.apply import over
 from roughmdr.batch.moments import mean_and_error
 from roughmdr.errors import StoreError
 from roughmdr.model_error.at_force import pull_off_error
@@ -60,16 +61,7 @@ def _mean_and_error(dataset: "xr.Dataset", name: str) -> "tuple[xr.DataArray, xr
     each = dataset[name]
     if "realization" not in each.dims:
         return each, xr.full_like(each, np.nan)
-    each = each if each.chunks is None else each.chunk(realization=-1)
-    mean, error = xr.apply_ufunc(
-        _over_realizations,
-        each,
-        input_core_dims=[["realization"]],
-        output_core_dims=[[], []],
-        keep_attrs=False,
-        dask="parallelized",
-        output_dtypes=[np.float64] * 2,
-    )
+    mean, error = over("realization", _over_realizations, each, parts=2)
     attrs = each.attrs | {"long_name": f"mean of the {each.attrs['long_name']}"}
     return mean.assign_attrs(attrs), error
 

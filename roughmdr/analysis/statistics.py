@@ -1,12 +1,14 @@
 """The statistics over the realisations of a result, as a run with keep = "statistics" stores them."""
 
 import math
+from operator import attrgetter
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import tomli_w
 from numpy.typing import NDArray
 
+from roughmdr.analysis.apply import in_one_chunk, over
 from roughmdr.batch.moments import moments_of
 from roughmdr.errors import StoreError
 from roughmdr.loading.path import LoadingPath
@@ -15,7 +17,6 @@ from roughmdr.result.cells import of_cells
 from roughmdr.result.curves import result_of, stored_curves
 from roughmdr.result.model_errors import FORCES, errors_along
 from roughmdr.result.view import ResultView
-from roughmdr.scene import Scene
 from roughmdr.schema.toml_text import parse_toml
 from roughmdr.storage.labelled import Labelled
 from roughmdr.variables import (
@@ -110,25 +111,14 @@ def _of_found(dataset: "xr.Dataset") -> "xr.Dataset":
 
 def _statistics(dataset: "xr.Dataset", name: str, counted: "xr.DataArray") -> "dict[str, xr.DataArray]":
     """Return the statistics of a variable over the realisations that are counted."""
-    import xarray as xr
-
     array = dataset[name]
-    if array.chunks is not None:
-        array = array.chunk({"realization": -1, **({"step": "auto"} if "step" in array.dims else {})})
-        counted = counted if counted.chunks is None else counted.chunk(realization=-1)
-    found = xr.apply_ufunc(
-        _moments,
-        array,
-        counted,
-        input_core_dims=[["realization"], ["realization"]],
-        output_core_dims=[[]] * len(STATISTICS),
-        keep_attrs=False,
-        dask="parallelized",
-        output_dtypes=[np.float64] * len(STATISTICS),
-    )
+    if array.chunks is not None and "step" in array.dims:
+        array = array.chunk({"realization": -1, "step": "auto"})
+    found = over("realization", _moments, array, counted, parts=len(STATISTICS))
     parts = dict(zip(STATISTICS, found, strict=True))
+    the = "the " if name in PULL_OFF else ""
     attrs = {
-        statistic: {**array.attrs, "long_name": f"{said} of {_article(name)}{array.attrs['long_name']}"}
+        statistic: {**array.attrs, "long_name": f"{said} of {the}{array.attrs['long_name']}"}
         for statistic, said in STATISTICS.items()
     }
     if name not in PULL_OFF:
@@ -137,10 +127,6 @@ def _statistics(dataset: "xr.Dataset", name: str, counted: "xr.DataArray") -> "d
         parts["sem"] = parts["sem"].where(known)
         attrs["sem"]["comment"] = INFINITE_VARIANCE
     return {f"{name}_{statistic}": part.assign_attrs(attrs[statistic]) for statistic, part in parts.items()}
-
-
-def _article(name: str) -> str:
-    return "the " if name in PULL_OFF else ""
 
 
 def _moments(values: Floats, counted: NDArray[np.bool_]) -> tuple[Floats, ...]:
@@ -184,22 +170,17 @@ def _has_variance(dataset: "xr.Dataset") -> "xr.DataArray | None":
         output_core_dims=[["step"]],
         vectorize=True,
     )
-    without = at & (of_cells(dataset, _work, "statistics") > 0.0)
+    without = at & (of_cells(dataset, attrgetter("work"), "statistics") > 0.0)
     return ~without if bool(without.any()) else None
-
-
-def _work(scene: Scene) -> float:
-    return scene.work
 
 
 def _reduced(array: "xr.DataArray", rule: str) -> "xr.DataArray":
     """Return a diagnostic merged over the realisations."""
     import xarray as xr
 
-    array = array if array.chunks is None else array.chunk(realization=-1)
     merged: xr.DataArray = xr.apply_ufunc(
         getattr(np, rule).reduce,
-        array,
+        in_one_chunk(array, "realization"),
         kwargs={"axis": -1},
         input_core_dims=[["realization"]],
         keep_attrs=True,
