@@ -4,7 +4,6 @@ The params hold the number of pieces, the length of a row, a row for each piece,
 begins, the number of softening intervals, and the beginning and end of each. The last piece goes on without end.
 """
 
-from roughmdr.numerics.search import last_at_or_below
 from roughmdr.shapes.profile import Params
 
 ROWS = 2
@@ -18,7 +17,11 @@ def row(number: int, params: Params) -> int:
 
 def find(t: float, length: int, params: Params) -> int:
     """Return the offset of the row of the piece that t lies on, from the length of rows: sooner if it is a constant."""
-    return ROWS + length * last_at_or_below(t, params, ROWS, length, int(params[0]))
+    low, left = 0, int(params[0])
+    while left > 1:
+        half = left // 2
+        low, left = (low + half if t >= params[ROWS + length * (low + half)] else low), left - half
+    return ROWS + length * low
 
 
 def breakpoint_count(params: Params) -> int:
