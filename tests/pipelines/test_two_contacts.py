@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 from forms import large
 from oracles.boundary_elements import HeightMap, by_perimeter, label_contacts, of_half_ellipsoids
+from oracles.coplanar_discs import disc_forces
 from oracles.periodic_contact import periodic
 from oracles.tilted_contact import press_tilted
 from oracles.two_contacts import Indenter, equal_pair, pair, press
-from oracles.two_punches import punch_force
 from scipy.integrate import quad
 
 import roughmdr as rm
@@ -32,7 +32,8 @@ def test_two_paraboloids(distance: float) -> None:
 
 @pytest.mark.parametrize("distance", [2.5, 3, 4, large(6), large(10), large(20)])
 def test_two_level_punches(distance: float) -> None:
-    assert punch_force(distance) == pytest.approx(2.0 * PUNCHES[distance], rel=1e-9)
+    force = disc_forces(np.array([0.0, distance + 0.0j]), np.ones(2), degree=14)[0]
+    assert force == pytest.approx(2.0 * PUNCHES[distance], rel=1e-9)
 
 
 @pytest.mark.large
