@@ -7,7 +7,7 @@ import math
 
 import numba
 import pytest
-from benchmarks.evaluations import EXAMPLES, OTHERS, WORK, in_the_sum
+from twins.evaluations import EXAMPLES, OTHERS, WORK, in_the_sum
 
 from roughmdr.shapes import SHAPES
 

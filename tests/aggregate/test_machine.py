@@ -11,7 +11,7 @@ from forms import large, large_where_compiled
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from mpmath import mp, mpf
-from oracles.machine_path import BruteForce
+from twins.machine_path import BruteForce
 
 import roughmdr as rm
 

@@ -6,7 +6,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 from forms import large_where_compiled
-from oracles.spring_in_series import DugdaleParaboloid
+from twins.spring_in_series import DugdaleParaboloid
 
 import roughmdr as rm
 from roughmdr.shapes import Shape

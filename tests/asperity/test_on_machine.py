@@ -10,7 +10,7 @@ import xarray as xr
 from forms import large_where_compiled
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from oracles.spring_in_series import (
+from twins.spring_in_series import (
     DugdaleParaboloid,
     Held,
     Jkr,

@@ -9,8 +9,8 @@ import xarray as xr
 from forms import large
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from oracles.coplanar_discs import disc_forces
 from scenes import ensemble
+from twins.coplanar_discs import disc_forces
 
 import roughmdr as rm
 from roughmdr.interaction.green import Periodic, periodic_load

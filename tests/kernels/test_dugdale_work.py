@@ -5,7 +5,7 @@ import math
 import numba
 import numpy as np
 import pytest
-from benchmarks.evaluations import CONTACTS, EXAMPLES, MODULUS, WORK, evaluations
+from twins.evaluations import CONTACTS, EXAMPLES, MODULUS, WORK, evaluations
 
 from roughmdr.kernels.adhesion import Adhesion
 from roughmdr.kernels.choose import choose

@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 from forms import large
 from oracles.boundary_elements import HeightMap, by_perimeter, label_contacts, of_half_ellipsoids
-from oracles.coplanar_discs import disc_forces
-from oracles.periodic_contact import periodic
-from oracles.tilted_contact import press_tilted
-from oracles.two_contacts import Indenter, equal_pair, pair, press
 from scipy.integrate import quad
+from twins.coplanar_discs import disc_forces
+from twins.periodic_contact import periodic
+from twins.tilted_contact import press_tilted
+from twins.two_contacts import Indenter, equal_pair, pair, press
 
 import roughmdr as rm
 from roughmdr.errors import OutOfRange
@@ -150,6 +150,6 @@ def test_areas_on_a_grid(side: int, shift: int) -> None:
 
 
 def test_an_edge_that_is_not_found_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("oracles.two_contacts._MAX_ITERATIONS", 1)
+    monkeypatch.setattr("twins.two_contacts._MAX_ITERATIONS", 1)
     with pytest.raises(OutOfRange, match="degree is 6: the edge of the contact is not found"):
         equal_pair(PARABOLOID, 4.0, degree=6)

@@ -8,8 +8,8 @@ import pytest
 from forms import large
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from oracles.curved_body import force_at
 from scenes import scene
+from twins.curved_body import force_at
 
 import roughmdr as rm
 from roughmdr import expected

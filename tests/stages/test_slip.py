@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from oracles.multiprecision import mp
-from oracles.sliding_springs import follow
+from twins.sliding_springs import follow
 
 from roughmdr import OutOfRange
 from roughmdr.aggregate import LoadingPath, LoadSeparation, simulate

@@ -8,7 +8,7 @@ import pytest
 from forms import large
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from oracles.viscoelastic import Triangle
+from twins.viscoelastic import Triangle
 
 from roughmdr.aggregate import LoadingPath, LoadSeparation, simulate
 from roughmdr.aggregate.problem import Problem

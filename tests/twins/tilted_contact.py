@@ -12,9 +12,9 @@ import numpy as np
 from scipy.optimize import root
 from scipy.special import roots_jacobi
 
-from oracles.two_contacts import Indenter
 from roughmdr.errors import OutOfRange
 from roughmdr.numerics.arguments import Floats
+from twins.two_contacts import Indenter
 
 _NODES, _DIRECTIONS = 32, 64
 _TOLERANCE = 1e-14

@@ -8,9 +8,9 @@ punches do is a smooth integral over them; on a square patch that repeats, image
 import numpy as np
 from scipy.special import eval_jacobi, gamma, roots_jacobi, roots_legendre
 
-from oracles.mapped_disc import Complexes
-from oracles.periodic_contact import image_green
 from roughmdr.numerics.arguments import Floats
+from twins.mapped_disc import Complexes
+from twins.periodic_contact import image_green
 
 _MORE = 8  # points of the quadratures beyond the degree
 

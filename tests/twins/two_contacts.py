@@ -13,9 +13,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from oracles.mapped_disc import Complexes, MappedDisc, evaluate
 from roughmdr.errors import OutOfRange
 from roughmdr.numerics.arguments import Floats
+from twins.mapped_disc import Complexes, MappedDisc, evaluate
 
 DEGREE = 8
 _MAX_ITERATIONS, _MAX_SWEEPS = 30, 60

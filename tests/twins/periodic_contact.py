@@ -8,9 +8,9 @@ import math
 import numpy as np
 from scipy.special import erf, erfc
 
-from oracles.mapped_disc import Complexes
-from oracles.two_contacts import DEGREE, Contact, Indenter, press
 from roughmdr.numerics.arguments import Floats
+from twins.mapped_disc import Complexes
+from twins.two_contacts import DEGREE, Contact, Indenter, press
 
 _CELLS = 3  # images and waves on either side: the sums of Ewald have 14 digits at the contact
 _SPLIT = math.sqrt(math.pi)
