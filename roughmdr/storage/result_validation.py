@@ -6,6 +6,8 @@ Anyone may have changed the file. A result may hold more than is declared; decla
 from collections.abc import Iterator
 from pathlib import Path
 
+import numpy as np
+
 from roughmdr.storage.labelled import Labelled
 from roughmdr.storage.result_form import (
     attribute_faults,
@@ -18,25 +20,50 @@ from roughmdr.storage.result_form import (
     with_units,
 )
 from roughmdr.storage.result_scene import scene_faults
-from roughmdr.storage.result_values import value_faults
 from roughmdr.variables import (
     AUXILIARY_COORDINATES,
+    BRANCHES,
+    DONE,
     FAILED,
     LAW_VARIABLES,
+    NOT_RUN,
     OUTPUT_VARIABLES,
+    PULL_OFF,
+    PULL_OFF_NUMBERS,
+    PULL_OFF_PER_AREA,
     REFERENCE_VARIABLES,
     RESULT_ATTRIBUTES,
+    RUN_DIAGNOSTICS,
+    RUN_VARIABLES,
+    SAMPLE,
     STEP_COORDINATES,
 )
 
 _REQUIRED_VARIABLES = ("status", "run_time", "numerical_error")
+_COUNTS = ("realization_count", "pull_off_count")
+_CODES = ("adhesion_law", "accuracy_method", "asperity_origin")
+_OF_GRIDS = ("reference_error", "reference_area_error")
+_KNOWN_TOGETHER = {
+    "largest_contact_fraction": [name for name in RUN_DIAGNOSTICS if name.endswith("_error") and name not in SAMPLE],
+    "avalanche_count": ["avalanche_size_max"],
+    **{name: [*_OF_GRIDS] for name in REFERENCE_VARIABLES},
+    **{f"{name}_mean": [f"{each}_mean" for each in _OF_GRIDS] for name in REFERENCE_VARIABLES},
+}
+"""Variables that are known where another is."""
+_LARGEST = 1e150  # magnitude of a variable of a law in SI: products of larger ones overflow
+_NOT_NEGATIVE = {
+    *(name for name, declared in (PULL_OFF | RUN_VARIABLES).items() if declared.units in ("1", "m2", "s")),
+    *(name for name in LAW_VARIABLES if name.endswith(("_count", "_error", "_error_curve")) or name == "time"),
+}
+"""Diagnostics of runs, and errors, counts and times of laws; the difference of two laws may have negative areas."""
+_ROUNDING = 1e-9  # share of the largest magnitude by which a sum may be off its bounds
 
 
 def as_result(data: Labelled, file: Path | None = None) -> Labelled:
     """Return arrays, of a file or not, as a result, with the declared units where they have none; StoreError if they
     are none.
     """
-    checks = (_missing, _attributes, _dimensions, _arrays, _companions, value_faults)
+    checks = (_missing, _attributes, _dimensions, _arrays, _companions, _values)
     refuse((fault for check in checks for fault in check(data)), "run", "result", file)
     return with_units(data, forms_of(data.variables["status"].dims) | control_forms(data))
 
@@ -97,3 +124,82 @@ def _companions(data: Labelled) -> Iterator[str]:
     curves = {each for name in LAW_VARIABLES for each in (name, *statistics_of(name))}
     if curves.isdisjoint(data.variables):
         yield f"it has none of {', '.join(OUTPUT_VARIABLES)}"
+
+
+def _values(data: Labelled) -> Iterator[str]:
+    """Find values that no run writes, in arrays that are known to have the right types and dimensions."""
+    if not np.isin(data.variables["status"].values, (DONE, FAILED, NOT_RUN)).all():
+        yield f"status must be {DONE}, {FAILED} or {NOT_RUN}"
+    if not np.isin(data.coordinates["branch"].values, BRANCHES).all():
+        yield f"branch must be {' or '.join(BRANCHES)}"
+    for name, array in data.coordinates.items():
+        if array.values.dtype.kind == "f" and not np.isfinite(array.values).all():
+            yield f"{name} is not finite"
+    yield from _computed(data)
+    yield from _magnitudes(data)
+    yield from _statistics(data)
+    yield from _pull_offs(data)
+    for name in _CODES:
+        if name in data.variables:
+            array = data.variables[name]
+            meanings = array.attrs.get("flag_meanings")
+            if not is_text(meanings):
+                yield f"{name} has no flag_meanings"
+            elif not ((array.values >= 0) & (array.values < len(str(meanings).split()))).all():
+                yield f"{name} has a value that is none of its flags"
+
+
+def _computed(data: Labelled) -> Iterator[str]:
+    """Find numbers that are not known although they were computed; marked steps may have no value."""
+    status = data.variables["status"].values
+    marked = data.variables["marked_steps"].values if "marked_steps" in data.variables else np.zeros_like(status)
+    whole = (status == DONE) & (marked == 0.0)
+    diagnostics = ("run_time", "numerical_error", "reference_points")
+    for name in (*diagnostics, *OUTPUT_VARIABLES, *(f"{name}_mean" for name in OUTPUT_VARIABLES)):
+        if name in data.variables and not np.isfinite(data.variables[name].values[whole]).all():
+            yield f"{name} is not finite, and status says that it was computed"
+    for name, others in _KNOWN_TOGETHER.items():
+        if name in data.variables:
+            array = data.variables[name]
+            done = (status == DONE)[..., None] if array.dims[-1:] == ("step",) else status == DONE
+            known = np.isfinite(array.values) & done
+            for other in others:
+                if other in data.variables and not np.isfinite(data.variables[other].values[known]).all():
+                    yield f"{other} is not finite where {name} is known"
+
+
+def _pull_offs(data: Labelled) -> Iterator[str]:
+    """Find statistics of pull-offs where no realisation has one, or none where some have."""
+    if "pull_off_count" in data.variables and "pull_off_force_mean" in data.variables:
+        having = data.variables["pull_off_count"].values > 0.0
+        if not (having == np.isfinite(data.variables["pull_off_force_mean"].values)).all():
+            yield "pull_off_count is not that of pull_off_force_mean"
+
+
+def _magnitudes(data: Labelled) -> Iterator[str]:
+    """Find numbers that are too large, and negative ones in variables that cannot be negative."""
+    for name in (*LAW_VARIABLES, *PULL_OFF, *RUN_VARIABLES):
+        for each in [held for held in (name, *statistics_of(name)) if held in data.variables]:
+            values = data.variables[each].values
+            if values.dtype.kind != "f":
+                continue
+            largest = float(np.fmax.reduce(np.abs(values), axis=None, initial=0.0))
+            if largest > _LARGEST:
+                yield f"{each} is above {_LARGEST:g} in SI"
+            if name in _NOT_NEGATIVE and (values < -_ROUNDING * largest).any():
+                yield f"{each} must be at least 0"
+    for name in [name for name in _COUNTS if name in data.variables]:
+        if not np.isfinite(data.variables[name].values).all():
+            yield f"{name} must be at least 0, and finite"
+
+
+def _statistics(data: Labelled) -> Iterator[str]:
+    """Find means that do not lie between the least and the greatest, and standard errors below 0."""
+    for name in (*LAW_VARIABLES, *PULL_OFF_NUMBERS, *PULL_OFF_PER_AREA):
+        if f"{name}_mean" in data.variables:
+            mean, error, least, greatest = (data.variables[each].values for each in statistics_of(name))
+            slack = _ROUNDING * np.fmax(np.abs(least), np.abs(greatest))
+            if ((mean < least - slack) | (mean > greatest + slack)).any():
+                yield f"{name}_mean does not lie between {name}_min and {name}_max"
+            if (error < 0.0).any():
+                yield f"{name}_sem must be at least 0"
