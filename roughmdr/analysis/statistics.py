@@ -1,7 +1,6 @@
 """The statistics over the realisations of a result, as a run with keep = "statistics" stores them."""
 
 import math
-from operator import attrgetter
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -170,7 +169,7 @@ def _has_variance(dataset: "xr.Dataset") -> "xr.DataArray | None":
         output_core_dims=[["step"]],
         vectorize=True,
     )
-    without = at & (of_cells(dataset, attrgetter("work"), "statistics") > 0.0)
+    without = at & (of_cells(dataset, lambda scene: scene.work, "statistics") > 0.0)
     return ~without if bool(without.any()) else None
 
 
