@@ -1,6 +1,7 @@
 """The statistics over the realisations of a result, as a run with keep = "statistics" stores them."""
 
 import math
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -13,7 +14,7 @@ from roughmdr.loading.path import LoadingPath
 from roughmdr.numerics.arguments import Floats
 from roughmdr.result.cells import of_cells
 from roughmdr.result.curves import result_of, stored_curves
-from roughmdr.result.model_errors import FORCES, errors_along
+from roughmdr.result.model_errors import FORCES, attributes, errors_along, known_in
 from roughmdr.result.view import ResultView
 from roughmdr.scene import Scene
 from roughmdr.schema.toml_text import parse_toml
@@ -82,10 +83,29 @@ def statistics(dataset: "xr.Dataset") -> "xr.Dataset":
     bare = {name: array.reset_coords(drop=True) for name, array in found.items()}
     coordinates = {name: dataset[name].variable for name in kept}
     reduced = xr.Dataset(bare, coords=coordinates, attrs=attrs)
-    if result.control in FORCES:  # computed at once, also of a dataset in chunks: they are few
-        errors = errors_along(ResultView(Labelled.of(reduced)))
-        reduced = reduced.assign({name: (array.dims, array.values, array.attrs) for name, array in errors.items()})
+    if result.control in FORCES:
+        reduced = reduced.assign(_model_errors(reduced, result.control))
     return reduced.set_coords("remark") if "remark" in bare else reduced
+
+
+def _model_errors(reduced: "xr.Dataset", control: str) -> "Mapping[Any, xr.DataArray]":
+    """Return the errors of the model in means along a path on which the force is given; not computed of chunks."""
+    import xarray as xr
+
+    def along(loaded: xr.Dataset) -> xr.Dataset:
+        errors = errors_along(ResultView(Labelled.of(loaded)))
+        arrays = {name: (array.dims, array.values, array.attrs) for name, array in errors.items()}
+        return xr.Dataset(arrays, loaded.coords).reset_coords(drop=True)
+
+    if not reduced.chunks:
+        return along(reduced).data_vars
+    means, like = ResultView(reduced), xr.Dataset()
+    for name in known_in(means, [*stored_curves(means), *reduced.coords]):
+        if name != control:
+            attrs = attributes(name.removesuffix("_mean"), control)
+            empty = xr.zeros_like(reduced[name]).reset_coords(drop=True).chunk(-1)
+            like[f"{name}{MODEL_ERROR}"] = empty.drop_attrs().assign_attrs(attrs)
+    return xr.map_blocks(along, reduced.chunk(-1), template=like).data_vars
 
 
 def _is_found(dataset: "xr.Dataset") -> bool:
