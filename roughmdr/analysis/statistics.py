@@ -14,7 +14,7 @@ from roughmdr.loading.path import LoadingPath
 from roughmdr.numerics.arguments import Floats
 from roughmdr.result.cells import of_cells
 from roughmdr.result.curves import result_of, stored_curves
-from roughmdr.result.model_errors import FORCES, attributes, errors_along, known_in
+from roughmdr.result.model_errors import FORCES, errors_along
 from roughmdr.result.view import ResultView
 from roughmdr.scene import Scene
 from roughmdr.schema.toml_text import parse_toml
@@ -84,28 +84,21 @@ def statistics(dataset: "xr.Dataset") -> "xr.Dataset":
     coordinates = {name: dataset[name].variable for name in kept}
     reduced = xr.Dataset(bare, coords=coordinates, attrs=attrs)
     if result.control in FORCES:
-        reduced = reduced.assign(_model_errors(reduced, result.control))
+        reduced = reduced.assign(_model_errors(reduced))
     return reduced.set_coords("remark") if "remark" in bare else reduced
 
 
-def _model_errors(reduced: "xr.Dataset", control: str) -> "Mapping[Any, xr.DataArray]":
+def _model_errors(reduced: "xr.Dataset") -> "Mapping[Any, xr.DataArray]":
     """Return the errors of the model in means along a path on which the force is given; not computed of chunks."""
     import xarray as xr
 
     def along(loaded: xr.Dataset) -> xr.Dataset:
         errors = errors_along(ResultView(Labelled.of(loaded)))
-        arrays = {name: (array.dims, array.values, array.attrs) for name, array in errors.items()}
-        return xr.Dataset(arrays, loaded.coords).reset_coords(drop=True)
+        return xr.Dataset({name: each[:] for name, each in errors.items()}, loaded.coords).reset_coords(drop=True)
 
     if not reduced.chunks:
         return along(reduced).data_vars
-    means, like = ResultView(reduced), xr.Dataset()
-    for name in known_in(means, [*stored_curves(means), *reduced.coords]):
-        if name != control:
-            attrs = attributes(name.removesuffix("_mean"), control)
-            empty = xr.zeros_like(reduced[name]).reset_coords(drop=True).chunk(-1)
-            like[f"{name}{MODEL_ERROR}"] = empty.drop_attrs().assign_attrs(attrs)
-    return xr.map_blocks(along, reduced.chunk(-1), template=like).data_vars
+    return xr.map_blocks(along, reduced.chunk(-1), template=along(xr.ones_like(reduced)).chunk(-1)).data_vars
 
 
 def _is_found(dataset: "xr.Dataset") -> bool:

@@ -100,9 +100,7 @@ def attributes(name: str, given: str) -> dict[str, str]:
 
 
 def known_in(result: ResultView, curves: Collection[str], needed: Collection[str] = _ALWAYS) -> list[str]:
-    """Return the names of ``curves`` whose error is known: none under a body, on a lateral path, without a force or the
-    numbers that are ``needed``.
-    """
+    """Return the names of ``curves`` whose error is known: none under a body, on a lateral path, without a force."""
     told = set(result.variables) >= {*needed} and result.flat and result.control != LATERAL.name
     bare = {_bare(name): name for name in curves if _bare(name) in WITH_MODEL_ERROR}
     return list(bare.values()) if told and not set(FORCES).isdisjoint(bare) and _H in bare else []
