@@ -54,7 +54,7 @@ def mean_height(hill: Territory, radius: float, ellipse: Floats) -> float:
     long, short = a * stretch, a / stretch
     cosine, sine = math.cos(angle), math.sin(angle)
     total, carried = 0.0, 1.0
-    for _ in range(3):
+    for _ in range(3):  # larger each time by what the border cuts off
         total = carried = area = 0.0
         for i in range(_ANGLES):
             turn = 2.0 * math.pi * (i + 0.5) / _ANGLES
