@@ -1,10 +1,8 @@
-"""A rigid height map on an elastic half-space by boundary elements: periodic or alone, without adhesion; areas.
+"""A rigid height map on an elastic half-space by boundary elements: periodic, without adhesion; areas.
 
 ContactMechanics solves it (fast Fourier transform, and the constrained conjugate gradients of I. A. Polonsky and
 L. M. Keer, Wear 231 (1999), 206). The mean displacement is held at 0, so that separations count from the mean plane of
-the deformed half-space. In the reduced problem the patch, the deepest overlap and E* are 1. A map
-that is alone (``FreeMap``) has the Green's function of a half-space that does not repeat: separations count from the
-undeformed plane, and in its reduced problem the side of a point, the deepest overlap and E* are 1.
+the deformed half-space. In the reduced problem the patch, the deepest overlap and E* are 1.
 
 Contact areas are found from the pressures of a periodic square grid, as shares of it. The number of cells under
 pressure is too large: a cell at the edge counts in full. With contacts of some ten cells in radius it is off by 1 % or
@@ -75,18 +73,14 @@ class HeightMap:
 
 
 def forces_of_cells(half_space: Any, height: Floats, separation: float, start: Floats) -> Floats | None:
-    """Return the forces of the cells of a reduced problem, from a ``start`` like them; None where none are found.
-
-    ``half_space`` is one of ContactMechanics, whose grid may be larger than the map.
-    """
+    """Return the forces of the cells of a reduced problem, from a ``start`` like them; None where none are found."""
     from ContactMechanics.Optimization import constrained_conjugate_gradients
 
-    around = [(0, grid - points) for grid, points in zip(half_space.nb_domain_grid_pts, height.shape, strict=True)]
     found = constrained_conjugate_gradients(
         half_space,
         height,
         offset=-separation,
-        initial_forces=np.pad(-start, around) if start.any() else None,
+        initial_forces=-start if start.any() else None,
         thermotol=_RTOL_FORCE,
         pentol=_RTOL_OVERLAP,
         forcetol=_RTOL_OVERLAP / height.size,
@@ -125,37 +119,3 @@ def of_half_ellipsoids(pressure: Floats) -> float:
     first, second = (np.bincount(contact, pressure.ravel() ** power) for power in (1, 2))
     loaded = second > 0.0
     return 1.125 * float(np.sum(first[loaded] ** 2 / second[loaded])) / pressure.size
-
-
-class FreeMap:
-    """Heights [m] on a grid of square cells of the side ``spacing`` [m], pressed into a half-space of E* = 1."""
-
-    def __init__(self, height: Floats, spacing: float) -> None:
-        from ContactMechanics import FreeFFTElasticHalfSpace
-
-        self.height, self.spacing = height, spacing
-        sides = tuple(float(points) for points in height.shape)
-        self._half_space = FreeFFTElasticHalfSpace(height.shape, 1.0, sides)
-        self.forces = np.zeros_like(height)
-        """[m2], of the cells at the last separation."""
-
-    def press(self, separation: float) -> float:
-        """Return the force [m2] at a separation [m]; NaN where none is found. It starts from the last forces."""
-        deepest = float(self.height.max()) - separation
-        if deepest <= 0.0:
-            self.forces = np.zeros_like(self.height)
-            return 0.0
-        unit = deepest * self.spacing
-        found = forces_of_cells(self._half_space, self.height / deepest, separation / deepest, self.forces / unit)
-        if found is None:
-            self.forces = np.zeros_like(self.height)
-            return math.nan
-        self.forces = found * unit
-        return float(self.forces.sum())
-
-    def stiffness(self, separation: float, step: float) -> float:
-        """Return -dF/dh [m] by a central difference of ``step`` [m] each way; the forces stay as they are."""
-        kept = self.forces
-        nearer, farther = self.press(separation - step), self.press(separation + step)
-        self.forces = kept
-        return (nearer - farther) / (2.0 * step)

@@ -211,6 +211,8 @@ def _found(
     near = np.array([step.overlap.crowding for step in steps])
     error = coupling_error(np.nan_to_num(fraction), near, ensemble, interaction.order)
     of_conductance = coupled_conductance_error(np.nan_to_num(fraction), share, ensemble, interaction.order)
+    if interaction.boundary == "free" and ensemble.origin == "asperities" and ensemble.height.size == 1:
+        error, of_conductance = np.zeros_like(error), np.zeros_like(of_conductance)  # it feels nobody
     closest = steps[int(np.argmin(np.where(solved, separation, np.inf)))].overlap
     marked = int(np.sum(beyond | ~solved))
     overlap = math.nan if hills else closest.share

@@ -1,6 +1,7 @@
 """The statistics over the realisations of a result, as a run with keep = "statistics" stores them."""
 
 import math
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -82,10 +83,22 @@ def statistics(dataset: "xr.Dataset") -> "xr.Dataset":
     bare = {name: array.reset_coords(drop=True) for name, array in found.items()}
     coordinates = {name: dataset[name].variable for name in kept}
     reduced = xr.Dataset(bare, coords=coordinates, attrs=attrs)
-    if result.control in FORCES:  # computed at once, also of a dataset in chunks: they are few
-        errors = errors_along(ResultView(Labelled.of(reduced)))
-        reduced = reduced.assign({name: (array.dims, array.values, array.attrs) for name, array in errors.items()})
+    if result.control in FORCES:
+        reduced = reduced.assign(_model_errors(reduced))
     return reduced.set_coords("remark") if "remark" in bare else reduced
+
+
+def _model_errors(reduced: "xr.Dataset") -> "Mapping[Any, xr.DataArray]":
+    """Return the errors of the model in means along a path on which the force is given; not computed of chunks."""
+    import xarray as xr
+
+    def along(loaded: xr.Dataset) -> xr.Dataset:
+        errors = errors_along(ResultView(Labelled.of(loaded)))
+        return xr.Dataset({name: each[:] for name, each in errors.items()}, loaded.coords).reset_coords(drop=True)
+
+    if not reduced.chunks:
+        return along(reduced).data_vars
+    return xr.map_blocks(along, reduced.chunk(-1), template=along(xr.ones_like(reduced)).chunk(-1)).data_vars
 
 
 def _is_found(dataset: "xr.Dataset") -> bool:

@@ -89,7 +89,7 @@ class Ensemble:
 
     @property
     def border_error(self) -> float:
-        """The relative error of the force by hills that the border of their map cuts [1]."""
+        """The relative error of the force by what the border of their map cuts [1]."""
         return float(self.attrs.get("border_error", 0.0))
 
     @property

@@ -117,7 +117,9 @@ def relative_at_force(
     found = [np.full(shape, np.nan) for _ in NAMES]
     for method, own in _methods(origin, grid):
         for error, (share, constant, root) in zip(found, method.errors, strict=True):
-            np.copyto(error, share * interaction + constant + root * np.sqrt(fraction) + others, where=own)
+            shared = interaction != 0.0  # not so the load of a lone asperity
+            along = share * interaction + shared * constant + shared * root * np.sqrt(fraction)
+            np.copyto(error, along + others, where=own)
     touching = np.where(fraction > 0.0, 1.0, 0.0 * fraction)
     return [np.minimum(error, 1.0) * touching for error in found]
 

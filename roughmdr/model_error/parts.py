@@ -32,7 +32,7 @@ PARTS = {
     "profile_end_error": "contacts beyond the end of their profile",
     "adhesion_range_error": "JKR, where adhesion reaches further than it supposes",
     "resolution_error": "a map that does not resolve its summits or hills",
-    "border_error": "hills that the border of a map cuts, which are left out",
+    "border_error": "what the border of a map cuts of its hills, or leaves out of its summits",
 }
 """The parts of the model error, by their names in results."""
 
@@ -46,7 +46,7 @@ class Assumptions(NamedTuple):
     resolution_error: float = 0.0
     """The relative error of the force that the resolution of a map causes."""
     border_error: float = 0.0
-    """The relative error of the force by hills that the border of a map cuts."""
+    """The relative error of the force by what the border of a map cuts."""
     origin: Origin = "asperities"
     """Where the asperities come from."""
     overlap: float = math.nan

@@ -86,7 +86,7 @@ def _relative_errors(
     foreseen += np.where(touching, others + by_jkr, 0.0)
     whole = np.where(np.isnan(stated), np.minimum(foreseen, 1.0), stated)
     of_jkr = np.minimum(whole, by_jkr)
-    own = np.maximum(whole - of_jkr - np.where(touching, others, 0.0), 0.0)
+    own = np.maximum(whole - of_jkr - np.where(touching, others, 0.0), 0.0) * (interaction != 0.0)
     sticky_hills = (origin == ORIGINS.index("hills")) & np.isfinite(numbers["avalanche_count"])
     over_largest = np.where(sticky_hills, whole, of_jkr)  # which hills attraction with a range makes sooner
     return whole - over_largest, over_largest, relative_at_force(own, fraction, others + by_jkr, origin, grid)
@@ -99,9 +99,9 @@ def attributes(name: str, given: str) -> dict[str, str]:
     return {"units": LAW_VARIABLES[name].units, "long_name": about}
 
 
-def known_in(result: ResultView, curves: Collection[str]) -> list[str]:
+def known_in(result: ResultView, curves: Collection[str], needed: Collection[str] = _ALWAYS) -> list[str]:
     """Return the names of ``curves`` whose error is known: none under a body, on a lateral path, without a force."""
-    told = set(result.variables) >= {*_ALWAYS} and result.flat and result.control != LATERAL.name
+    told = set(result.variables) >= {*needed} and result.flat and result.control != LATERAL.name
     bare = {_bare(name): name for name in curves if _bare(name) in WITH_MODEL_ERROR}
     return list(bare.values()) if told and not set(FORCES).isdisjoint(bare) and _H in bare else []
 
@@ -151,7 +151,8 @@ def errors_along(result: ResultView) -> dict[str, Array]:
     """
     given, suffix = result.control, "_mean" if result.keeps_statistics else ""
     held = {**result.coordinates, **result.variables}
-    labels = known_in(result, [name for name in held if "step" in held[name].dims])
+    needed = ("interaction_error",) if result.holds(_STATED) and given not in FORCES else _ALWAYS
+    labels = known_in(result, [name for name in held if "step" in held[name].dims], needed)
     if not labels:
         return {}
     dims = (*result.variables["interaction_error"].dims, "step")
@@ -170,6 +171,9 @@ def errors_along(result: ResultView) -> dict[str, Array]:
     known = np.where(np.isnan(curves[names.index(_H)]), np.nan, 1.0)  # both of a step, so that changes go together
     changes = [_changes(known * each, result.legs) for each in curves]
     numbers = [values(name) for name in _NUMBERS]
+    if "asperity_origin" not in held:  # in earlier versions the overlap of coupled hills alone is not known
+        of_hills = np.isnan(values("overlap_fraction"))
+        numbers[_NUMBERS.index("asperity_origin")] = np.where(of_hills, ORIGINS.index("hills"), np.nan)
     errors = errors_at(
         fraction, values(_STATED), largest, tension, *curves, *changes, *numbers, names=names, given=given
     )

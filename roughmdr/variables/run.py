@@ -74,7 +74,7 @@ RUN_DIAGNOSTICS = _diagnostics(
     Diagnostic("profile_end_error", "1", "part of the model error: contacts beyond the end of their profile"),
     Diagnostic("adhesion_range_error", "1", "part of the model error: JKR, where adhesion reaches further"),
     Diagnostic("resolution_error", "1", "part of the model error: summits or hills that the map does not resolve"),
-    Diagnostic("border_error", "1", "part of the model error: hills that the border of a map cuts", unstated=0.0),
+    Diagnostic("border_error", "1", "part of the model error: what the border of a map cuts", unstated=0.0),
     Diagnostic(
         "conductance_error",
         "1",

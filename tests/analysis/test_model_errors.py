@@ -152,6 +152,32 @@ def test_a_result_in_chunks_stays_lazy_and_has_the_same_errors(result: xr.Datase
     xr.testing.assert_allclose(lazy.compute(), result.roughmdr.at_pressure([50.0, 500.0]))
 
 
+def test_statistics_of_a_result_in_chunks_that_is_controlled_by_force_stay_lazy() -> None:
+    made = run(path={"force": ["10 uN", "20 uN", "50 uN"]}, batch={"realizations": 3})
+    lazy, eager = made.chunk(realization=1).roughmdr.statistics(), made.roughmdr.statistics()
+    name = f"separation_mean{MODEL_ERROR}"
+    assert lazy[name].chunks is not None
+    assert bool((eager[name] > 0.0).all())
+    xr.testing.assert_identical(lazy.compute(), eager)
+
+
+@pytest.mark.parametrize("boundary", ["free", "periodic"])
+def test_a_lone_asperity_shares_its_load_with_nobody(boundary: str) -> None:
+    """Alone on a half-space only its slopes are in doubt; where the patch repeats it has neighbours."""
+    one = ensemble([0.0], area=1e-10, radius=1e-5).assign(
+        {name: ("asperity", [5e-6], {"units": "m"}) for name in ("x", "y")}
+    )
+    law = rm.load_separation(
+        one, separation=np.linspace(0.0, -1e-7, 6), effective_modulus=1e9, variables=_VARIABLES,
+        interaction={"model": "pairwise", "boundary": boundary},
+    )  # fmt: skip
+    assert (float(law.interaction_error) == 0.0) == (boundary == "free")
+    there = law.roughmdr.at_force(0.5 * float(law.force.max()))
+    for name in ("contact_area", "stiffness", "contact_radius_sum"):
+        of_slopes = float(over_truth(there, name)) == pytest.approx(float(law.slope_error), rel=1e-6)
+        assert of_slopes == (boundary == "free"), name
+
+
 def test_of_a_reference_that_is_given_the_errors_are_those_at_its_separation() -> None:
     table = scene(
         adhesion=None, batch=None, path={"separation": {"start": "2 sigma", "stop": "1 sigma", "steps": 6}},

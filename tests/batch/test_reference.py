@@ -135,7 +135,8 @@ def test_what_is_pressed_beyond_the_border_of_a_map_is_said(
     xr.Dataset({"height": (("x", "y"), waves, {"units": "m"})}, {"x": x, "y": x}).to_netcdf(tmp_path / "map.nc")
     asperities = {"source": "surface", "file": str(tmp_path / "map.nc"), "model": "hills", "periodic": periodic}
     table = of_spectrum(asperities=asperities, interaction=interaction, batch=None)
-    mean_field = {**table, "interaction": {"model": "mean_field"}, "reference": None}
+    light = {"separation": ["95 nm"]}
+    mean_field = {**table, "interaction": {"model": "mean_field"}, "reference": None, "path": light}
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", rm.LimitWarning)
         assert rm.run(table).attrs["map"].endswith(line)

@@ -22,6 +22,7 @@ from roughmdr.ensemble.maps.height_map import HeightMap
 from roughmdr.ensemble.maps.hills.ellipse import area_share, complete_elliptic
 from roughmdr.ensemble.maps.hills.find import find_hills
 from roughmdr.ensemble.maps.hills.table import fill_table, points_of
+from roughmdr.ensemble.maps.resolution import HILLS_BY_BORDER
 from roughmdr.ensemble.maps.summits import find_summits
 from roughmdr.ensemble.maps.waves import slope_ratio
 from roughmdr.numerics.arguments import Floats
@@ -283,14 +284,62 @@ def test_what_is_said_of_hills(map_file: Path, tmp_path: Path) -> None:
     assert "none" in cut.output
 
 
-def test_hills_at_the_border_of_a_map_that_ends_are_an_error() -> None:
+def test_the_error_by_the_border_falls_with_the_side_and_is_a_part_of_the_model_error() -> None:
     height = rough(3)
     inside, alone = hills_of(height), hills_of(height, periodic=False)
-    length = float(alone.attrs["wavelength"])
     assert inside.attrs["border_error"] == 0.0
-    assert alone.attrs["border_error"] == pytest.approx(4.0 * length / SIDE)
+    share = min(4.0 * float(alone.attrs["wavelength"]) / SIDE, 1.0)
+    assert alone.attrs["border_error"] == pytest.approx(HILLS_BY_BORDER * share)
+    assert summits_of(height).attrs["border_error"] == 0.0
+    of_many = find_summits(HeightMap(np.tile(height, (2, 2)), SIDE / 128, SIDE / 128, False)).border_error
+    of_one = find_summits(HeightMap(height, SIDE / 128, SIDE / 128, False)).border_error
+    assert of_many == pytest.approx(0.5 * of_one, rel=0.1)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", rm.LimitWarning)
         law = rm.load_separation(alone, separation=float(alone.height.max()) * 0.5, **PAIRS)
     assert float(law.border_error) == alone.attrs["border_error"]
     assert float(law.model_error) >= float(law.border_error)
+
+
+@pytest.mark.parametrize(("row", "column"), [(0, 64), (-4, 64), (6, 64), (0, 0), (5, 5)])
+def test_a_hill_that_the_border_cuts_bears_what_is_left_of_it(row: int, column: int) -> None:
+    """A hill with its top on the border, beyond it, beside it, or at a corner; a low one is far from it on the map."""
+    x, y = np.arange(128)[:, None], np.arange(128)
+    height = np.exp(-((x - row) ** 2 + (y - column) ** 2) / (2.0 * 32.0**2))
+    height += 0.02 * np.exp(-((x - 122) ** 2 + (y - 122) ** 2) / 3.0)
+    alone = {"model": "pairwise", "boundary": "free"}
+    separation = float(height.max()) - np.array([0.05, 0.1, 0.2, 0.4])
+    found = hills_of(height * 0.01, 1.0, periodic=False)
+    law = rm.load_separation(found, separation=0.01 * separation, effective_modulus=1.0, interaction=alone)
+    grid = BoundaryElements(height * 0.01, np.ones(2), periodic=False)
+    error = 0.2 if row == column else 0.12  # the pressure of what is left of an ellipse differs most at a corner
+    np.testing.assert_allclose(law.force, [grid.press(0.01 * h) for h in separation], rtol=error)
+
+
+def test_what_a_border_cuts_off_a_map_is_counted() -> None:
+    """The highest hill of a map lies on the border of the part that is pressed alone."""
+    height = rough(7)
+    row, column = np.unravel_index(np.argmax(height), height.shape)
+    cut = np.roll(height, (-row, 32 - column), axis=(0, 1))[:96, :96]
+    side = 0.75 * SIDE
+    found, top = hills_of(cut, side, periodic=False), float(cut.max())
+    separation = top * np.array([0.95, 0.9, 0.8])
+    asked = {"interaction": {"model": "pairwise", "boundary": "free"}, "variables": ["force", "model_error_curve"]}
+    law = rm.load_separation(found, separation=separation, effective_modulus=1.0, **asked)
+    grid = BoundaryElements(cut / side, np.ones(2), periodic=False)
+    true = np.array([grid.press(h) for h in (separation / side).tolist()]) * side**2
+    assert (np.abs(law.force / true - 1.0) < 2.0 * law.model_error_curve).all()
+
+
+def test_hills_far_from_the_border_are_those_of_the_map_that_repeats() -> None:
+    height = rough(11)
+    inside, alone = hills_of(height), hills_of(height, periodic=False)
+    deep = 1.5 * float(inside.attrs["wavelength"])  # beyond the largest contact, which is 1.2 across
+    shared = 0
+    for each in range(inside.asperity.size):
+        one = inside.isel(asperity=each)
+        if min(one.x, one.y, SIDE - one.x, SIDE - one.y) > deep:
+            other = alone.isel(asperity=int(np.abs(alone.height - one.height).values.argmin()))
+            np.testing.assert_allclose(other.g / one.g, 1.0, rtol=0.05)  # at radii that go with the wavelength
+            shared += 1
+    assert shared > 0

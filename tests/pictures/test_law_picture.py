@@ -300,3 +300,7 @@ def test_the_band_of_the_model_error_is_over_the_largest_force_where_the_error_i
         own, tension = at - by_jkr, max(-each.middle.min() for each in curves)
         expected = max(load, tension) * own / (1.0 - min(own, 0.9)) + largest * by_jkr
         assert drawn == pytest.approx(expected, rel=1e-12)
+    earlier = ResultView(made.drop_vars(["asperity_origin", "border_error"]))  # by a version that did not know these
+    same = list(curves_of(earlier, Quantity.of(earlier, "force"), Quantity.of(earlier, "separation")))
+    for one, other in zip(curves, same, strict=True):
+        np.testing.assert_array_equal(other.model_error, one.model_error)

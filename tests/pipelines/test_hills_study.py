@@ -6,7 +6,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 from carried_out import CarriedOut, carried_out
-from oracles.boundary_elements import FreeMap
 from studies.comparison import rms
 from studies.hills import METHODS, PERSSON, STUDY, errors_of, groups, measure_maps, within
 from studies.hills.convergence import FINEST, SCALES, by_noise, by_points, by_scales
@@ -125,19 +124,6 @@ def test_it_says_that_measured_maps_are_left_out(studied: CarriedOut) -> None:
     assert "surface" not in studied.result.dims
 
 
-def test_a_sphere_alone_on_a_half_space() -> None:
-    """Hertz: F = 4/3 sqrt(R) d^1.5 and -dF/dh = 2 sqrt(R d), over E*."""
-    radius, depth, spacing = 4.0, 0.02, 0.01
-    x = spacing * (np.arange(80) - 39.5)
-    elements = FreeMap(-(x[:, None] ** 2 + x**2) / (2.0 * radius), spacing)
-    top = elements.height.max() + 2.0 * (0.5 * spacing) ** 2 / (2.0 * radius)
-    assert elements.press(top - depth) == pytest.approx(4.0 / 3.0 * np.sqrt(radius) * depth**1.5, rel=5e-3)
-    kept = elements.forces.copy()
-    assert elements.stiffness(top - depth, 0.05 * depth) == pytest.approx(2.0 * np.sqrt(radius * depth), rel=2e-2)
-    np.testing.assert_array_equal(elements.forces, kept)
-    assert elements.press(top + depth) == 0.0
-
-
 @pytest.mark.large
 @pytest.mark.skipif(not (SHARED / FILES[0]).exists(), reason="the measured surfaces are not here")
 def test_a_measured_map(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -146,9 +132,7 @@ def test_a_measured_map(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None
     found = measure_files(quick=True)
     assert list(found["surface"].to_numpy()) == [FILES[0]]
     errors = errors_on_files(found)
-    assert rms(errors.sel(surface_solver="hills")) < 0.7 * rms(errors.sel(surface_solver="summits in pairs"))
-    border = found["border_share"].to_numpy()
-    assert ((border > 0.0) & (border < 1.0)).all()
+    assert rms(errors.sel(surface_solver="hills")) < 0.2 * rms(errors.sel(surface_solver="summits in pairs"))
     text = report_files(found)
     assert all(f"| {FILES[0]} | {method} |" in text for method in FREE_METHODS)
-    assert "of the force." in text
+    assert "points a wavelength" in text

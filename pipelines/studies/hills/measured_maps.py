@@ -3,14 +3,13 @@
 The files are no part of the project; the environment variable ``ROUGHMDR_SURFACES`` names a folder that holds them.
 """
 
-import math
 import os
 from pathlib import Path
 
 import numpy as np
 import xarray as xr
-from oracles.boundary_elements import FreeMap, by_perimeter
 
+from roughmdr.elements.half_space import BoundaryElements
 from roughmdr.ensemble.maps.detrend import remove_trend
 from roughmdr.ensemble.maps.height_map import HeightMap
 from roughmdr.ensemble.maps.hills.find import wavelength
@@ -28,7 +27,6 @@ FREE_METHODS = ("summits", "summits in pairs", "hills")
 _ALONE = {"model": "pairwise", "boundary": "free"}
 _WAVES, _FEW_WAVES = 32, 12  # most waves a side of a square; the latter in the reduced form
 _SEARCHED = 12  # separations, between which those of the fractions are found
-_DIFFERENCE = 0.01  # step of the separation, each way, over the deepest overlap
 
 
 def files() -> list[Path]:
@@ -58,7 +56,7 @@ def measure_files(quick: bool) -> xr.Dataset:
 def _measure(surface: HeightMap) -> xr.Dataset:
     """Press one map by each method."""
     separation = _separations(surface)
-    true, border = _by_free_elements(surface, separation)
+    true = _by_elements(surface, separation)
     found = [
         by_asperities(surface, separation, find_summits, None),
         by_asperities(surface, separation, find_summits, _ALONE),
@@ -69,7 +67,6 @@ def _measure(surface: HeightMap) -> xr.Dataset:
     return xr.Dataset(
         {
             **{f"surface_{name}": (over, numbers[:, i]) for i, name in enumerate(QUANTITIES)},
-            "border_share": ("fraction", border, named("share of the force within one wavelength of the border")),
             "surface_points": ((), points, named("points a side")),
             "surface_waves": ((), points * surface.dx / length, named("wavelengths a side")),
             "surface_resolution_error": ((), hills_error(length / surface.dx)),
@@ -80,34 +77,18 @@ def _measure(surface: HeightMap) -> xr.Dataset:
 
 def _separations(surface: HeightMap) -> Floats:
     """Return separations [m] of the contact fractions."""
-    elements, top = FreeMap(surface.height, surface.dx), float(surface.height.max())
-    tried = top - np.linspace(0.02, 1.0, _SEARCHED) * float(np.ptp(surface.height))
-    fractions = []
-    for h in tried.tolist():
-        elements.press(h)
-        fractions.append(_contact_fraction(elements))
-    return np.asarray(np.interp(np.log(FRACTIONS), np.log(fractions), tried))
+    tried = float(surface.height.max()) - np.linspace(0.02, 1.0, _SEARCHED) * float(np.ptp(surface.height))
+    return np.asarray(np.interp(np.log(FRACTIONS), np.log(_by_elements(surface, tried)[1]), tried))
 
 
-def _by_free_elements(surface: HeightMap, separation: Floats) -> tuple[Floats, Floats]:
-    """Return the quantities [quantity, separation], and the share of the force next to the border."""
-    elements, top = FreeMap(surface.height, surface.dx), float(surface.height.max())
-    width = math.ceil(wavelength(surface) / surface.dx)
-    numbers, border = np.full((len(QUANTITIES), separation.size), np.nan), np.empty(separation.size)
+def _by_elements(surface: HeightMap, separation: Floats) -> Floats:
+    """Return the quantities [quantity, separation] by boundary elements of the map alone."""
+    sides = surface.dx * np.array(surface.height.shape)
+    elements, numbers = BoundaryElements(surface.height, sides, periodic=False), []
     for i, h in enumerate(separation.tolist()):
-        force = elements.press(h)
-        inside = float(elements.forces[width:-width, width:-width].sum())
-        numbers[:2, i] = force, _contact_fraction(elements)
-        if i % STIFFNESS_EACH == 0:
-            numbers[2, i] = elements.stiffness(h, _DIFFERENCE * (top - h))
-        border[i] = 1.0 - inside / force
-    return numbers, border
-
-
-def _contact_fraction(elements: FreeMap) -> float:
-    """Return that at the last separation; opposite sides of the map do not meet."""
-    padded = np.pad(elements.forces, 1)
-    return by_perimeter(padded) * padded.size / elements.forces.size
+        force, fraction = elements.press(h), elements.patches().area / float(sides.prod())
+        numbers.append((force, fraction, np.nan if i % STIFFNESS_EACH else elements.stiffness(h)))
+    return np.transpose(numbers)
 
 
 def report_files(result: xr.Dataset) -> str:
@@ -122,8 +103,8 @@ def report_files(result: xr.Dataset) -> str:
     described = " ".join(_described(name, result.sel(surface=name)) for name in names)
     return (
         "Measured maps, squares from the middle, against boundary elements of a free half-space on the same points: "
-        "errors of the forces of all cells, those at the border too, where hills and summits whose tops lie beyond it "
-        f"are missing.\n\n{table(head, rows)}\n\n{described}"
+        "errors of the forces of all cells, those at the border too, where summits beyond it are missing."
+        f"\n\n{table(head, rows)}\n\n{described}"
     )
 
 
@@ -146,7 +127,6 @@ def _rows(name: str, own: xr.Dataset) -> list[list[str]]:
 
 def _described(name: str, own: xr.Dataset) -> str:
     """Return what to know of a map before its errors are read."""
-    border = own["border_share"].to_numpy()
     per_wave, error = float(own["surface_points"] / own["surface_waves"]), float(own["surface_resolution_error"])
     few = (
         f"; that is too few: elements and hills on these points are held to each other, and neither to the surface, "
@@ -154,6 +134,5 @@ def _described(name: str, own: xr.Dataset) -> str:
     )
     return (
         f"{name}: {int(own['surface_points'])} points and {float(own['surface_waves']):.0f} wavelengths a side, "
-        f"{per_wave:.1f} points a wavelength{few if error > MAX_HILLS_ERROR else ''}. Within one wavelength of the "
-        f"border lies {percent(border.min(), 0)} to {percent(border.max(), 0)} of the force."
+        f"{per_wave:.1f} points a wavelength{few if error > MAX_HILLS_ERROR else ''}."
     )

@@ -1,5 +1,6 @@
 """Find the summits of a height map, and fit a paraboloid to each."""
 
+import math
 from collections.abc import Iterator
 from typing import NamedTuple
 
@@ -8,10 +9,11 @@ from numpy.lib.stride_tricks import sliding_window_view
 
 from roughmdr.ensemble.ensemble import Ensemble
 from roughmdr.ensemble.maps.height_map import HeightMap, blocks
+from roughmdr.ensemble.maps.resolution import SUMMITS_BY_BORDER, border_error
 from roughmdr.errors import SceneError
 from roughmdr.numerics.arguments import Floats
 
-_NEIGHBOURS = [(i, j) for i in (-1, 0, 1) for j in (-1, 0, 1) if (i, j) != (0, 0)]
+NEIGHBOURS = [(i, j) for i in (-1, 0, 1) for j in (-1, 0, 1) if (i, j) != (0, 0)]
 
 
 class _Fits(NamedTuple):
@@ -36,9 +38,10 @@ def find_summits(surface: HeightMap, noise: float = 0.0) -> Ensemble:
     is one next to an undefined point; the nominal area [m2] is that of the defined points. SceneError where there is no
     summit.
 
-    Attributes: ``points_per_summit``; ``saddles``, their number; ``misfit``, the fourth difference h_xxyy over the
-    second, h_xx + h_yy, both r.m.s. over the summits: the residual of the fit over the curvature; and, of a map with
-    undefined points, ``blind_share``, those beside them over all that are defined: about the share of summits missed.
+    Attributes: ``points_per_summit``; ``border_error``, of the force; ``saddles``, their number; ``misfit``, the fourth
+    difference h_xxyy over the second, h_xx + h_yy, both r.m.s. over the summits: the residual of the fit over the
+    curvature; and, of a map with undefined points, ``blind_share``, those beside them over all that are defined: about
+    the share of summits missed.
     """
     dx, dy = surface.dx, surface.dy
     nx, ny = surface.height.shape
@@ -53,6 +56,7 @@ def find_summits(surface: HeightMap, noise: float = 0.0) -> Ensemble:
         "patch_x": nx * dx,
         "patch_y": ny * dy,
         "points_per_summit": defined / height.size,
+        "border_error": border_error(surface, math.sqrt(defined / height.size * dx * dy), SUMMITS_BY_BORDER),
         "saddles": sum(candidates) - height.size,
         "misfit": float(np.linalg.norm(fourth) / np.linalg.norm(second)),
     }
@@ -85,13 +89,13 @@ def _fit(part: Floats, first: int, edge: float, noise: float) -> _Fits:
         return part[1 + i : part.shape[0] - 1 + i, 1 + j : part.shape[1] - 1 + j]
 
     lowered, above = inner - noise, np.ones(inner.shape, dtype=bool)
-    for i, j in _NEIGHBOURS:
+    for i, j in NEIGHBOURS:
         above &= lowered > neighbours(i, j)
     rows, columns = np.nonzero(above)
-    drop = {(i, j): neighbours(i, j)[rows, columns] - inner[rows, columns] for i, j in _NEIGHBOURS}
+    drop = {(i, j): neighbours(i, j)[rows, columns] - inner[rows, columns] for i, j in NEIGHBOURS}
 
     def moment(m: int, n: int) -> Floats:
-        return np.asarray(sum((i**m * j**n * drop[i, j] for i, j in _NEIGHBOURS), np.zeros(rows.size)))
+        return np.asarray(sum((i**m * j**n * drop[i, j] for i, j in NEIGHBOURS), np.zeros(rows.size)))
 
     # The normal equations of drop = p i + q j + (A i^2 + 2 B i j + C j^2)/2 over the eight neighbours (i, j).
     p, q = moment(1, 0) / 6.0, moment(0, 1) / 6.0

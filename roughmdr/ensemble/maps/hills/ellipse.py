@@ -10,7 +10,7 @@ import math
 
 import numpy as np
 
-from roughmdr.ensemble.maps.hills.territory import Territory, height
+from roughmdr.ensemble.maps.hills.territory import Territory, height, on_map
 from roughmdr.numerics.arguments import Floats
 from roughmdr.numerics.gauss import unit_gauss
 from roughmdr.numerics.jit import njit
@@ -22,6 +22,8 @@ MAX_DRIFT = 0.2
 _ANGLES = 12
 _NODES, _WEIGHTS = unit_gauss(5)
 _RINGS = np.sqrt((1.0 - _NODES) * (1.0 + _NODES))  # radii [1] of rings with equal shares of the load of a punch
+_AREAS = 2.0 * _WEIGHTS * _NODES  # shares of the area that belong to the rings
+_CUT = 1.0 - 1e-9, 0.125  # shares of the area on a map from which an ellipse is whole, and below which it is none
 _SWEEPS = 2
 _FIRST_STEPS = np.array([0.2, 0.2, 0.15, 0.15])
 
@@ -41,23 +43,36 @@ def complete_elliptic(k: float) -> float:
 
 @njit
 def mean_height(hill: Territory, radius: float, ellipse: Floats) -> float:
-    """Return the mean height [m] under an elliptic punch as stiff as a circle of ``radius`` [wavelength]."""
+    """Return the mean height [m] under an elliptic punch as stiff as a circle of ``radius`` [wavelength].
+
+    One that the border of a map cuts has the area of a whole one on the map; -inf where hardly any of it is there.
+    """
     q = math.hypot(ellipse[0], ellipse[1])
     angle = 0.5 * math.atan2(ellipse[1], ellipse[0])
     stretch = math.exp(q)
     a = radius * math.sqrt(area_share(ellipse))
     long, short = a * stretch, a / stretch
     cosine, sine = math.cos(angle), math.sin(angle)
-    total = 0.0
-    for i in range(_ANGLES):
-        turn = 2.0 * math.pi * (i + 0.5) / _ANGLES
-        along, across = long * math.cos(turn), short * math.sin(turn)
-        x, y = cosine * along - sine * across, sine * along + cosine * across
-        for k in range(_RINGS.size):
-            total += _WEIGHTS[k] * height(
-                hill, radius * ellipse[2] + _RINGS[k] * x, radius * ellipse[3] + _RINGS[k] * y
-            )
-    return total / _ANGLES
+    total, carried = 0.0, 1.0
+    for _ in range(3):  # larger each time by what the border cuts off
+        total = carried = area = 0.0
+        for i in range(_ANGLES):
+            turn = 2.0 * math.pi * (i + 0.5) / _ANGLES
+            along, across = long * math.cos(turn), short * math.sin(turn)
+            x, y = cosine * along - sine * across, sine * along + cosine * across
+            for k in range(_RINGS.size):
+                at_x, at_y = radius * ellipse[2] + _RINGS[k] * x, radius * ellipse[3] + _RINGS[k] * y
+                if on_map(hill, at_x, at_y):
+                    total += _WEIGHTS[k] * height(hill, at_x, at_y)
+                    carried += _WEIGHTS[k]
+                    area += _AREAS[k]
+        if area > _CUT[0] * _ANGLES:
+            return total / _ANGLES
+        if area < _CUT[1] * _ANGLES:
+            return -math.inf
+        larger = math.sqrt(_ANGLES / area * a * a / (long * short))
+        long, short = larger * long, larger * short
+    return total / carried
 
 
 @njit
@@ -69,10 +84,11 @@ def area_share(ellipse: Floats) -> float:
 
 
 @njit
-def _allowed(radius: float, ellipse: Floats) -> bool:
+def _allowed(hill: Territory, radius: float, ellipse: Floats) -> bool:
     return (
         math.hypot(ellipse[0], ellipse[1]) <= MAX_ELONGATION
         and radius * math.hypot(ellipse[2], ellipse[3]) <= MAX_DRIFT
+        and on_map(hill, radius * ellipse[2], radius * ellipse[3])
     )
 
 
@@ -93,7 +109,7 @@ def improve(hill: Territory, radius: float, ellipse: Floats) -> float:
             if bend < 0.0:
                 move = min(max(-0.5 * slope / bend, -2.0), 2.0) * step[k]
             ellipse[k] = place + move
-            found = mean_height(hill, radius, ellipse) if _allowed(radius, ellipse) else -math.inf
+            found = mean_height(hill, radius, ellipse) if _allowed(hill, radius, ellipse) else -math.inf
             if found > best:
                 best = found
             else:

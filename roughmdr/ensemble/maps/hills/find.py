@@ -12,7 +12,8 @@ from roughmdr.ensemble.maps.height_map import HeightMap, map_statistics
 from roughmdr.ensemble.maps.hills.ellipse import PARAMETERS, area_share, improve
 from roughmdr.ensemble.maps.hills.table import fill_table, points_of
 from roughmdr.ensemble.maps.hills.territory import RAYS, STEPS, Spline, Territory, explore, raw_height, top_of
-from roughmdr.ensemble.maps.resolution import border_error, hills_error
+from roughmdr.ensemble.maps.resolution import HILLS_BY_BORDER, border_error, hills_error
+from roughmdr.ensemble.maps.summits import NEIGHBOURS
 from roughmdr.ensemble.maps.waves import mean_square_laplacian, slope_ratio
 from roughmdr.errors import SceneError
 from roughmdr.numerics.arguments import Floats
@@ -69,7 +70,9 @@ def find_hills(surface: HeightMap, summits: Ensemble, scales: int = SCALES) -> E
     radius = np.geomspace(SMALLEST, LARGEST, scales)
     points = points_of(radius)
     rows, columns = summits.positions["x"] / surface.dx - 0.5, summits.positions["y"] / surface.dy - 0.5
-    count = summits.height.size
+    if not surface.periodic:
+        rows, columns = np.append(np.array([rows, columns]), _tops_of_border(surface), axis=1)
+    count = rows.size
     height, g, moved = np.empty(count), np.empty((count, scales)), np.empty((count, 2))
     kept, share = np.empty(count, dtype=np.bool_), np.empty(count)
     _measure(spline, rows, columns, radius, points, Hills(height, g, moved, share, kept))
@@ -90,6 +93,19 @@ def find_hills(surface: HeightMap, summits: Ensemble, scales: int = SCALES) -> E
     ).sorted()
 
 
+def _tops_of_border(surface: HeightMap) -> Floats:
+    """Return row and column of the points on the border of a map above all neighbours: summits that the border cuts."""
+    height, shape = surface.height, np.array(surface.height.shape)[:, None]
+    frame = np.ones(height.shape, dtype=np.bool_)
+    frame[1:-1, 1:-1] = False
+    at = np.array(np.nonzero(frame))
+    for step in NEIGHBOURS:
+        beside = np.clip(at + np.array(step)[:, None], 0, shape - 1)
+        lower = height[*beside] < height[*at] - surface.rounding
+        at = at[:, lower | (beside == at).all(axis=0)]
+    return at.astype(np.float64)
+
+
 def _repeated(at: Floats, height: Floats, apart: Floats, *, periodic: bool) -> NDArray[np.bool_]:
     """Return which hills coincide with a higher one; positions [hill, 2] and ``apart`` over the sides."""
     from scipy.spatial import cKDTree
@@ -108,13 +124,12 @@ def _repeated(at: Floats, height: Floats, apart: Floats, *, periodic: bool) -> N
 def _attributes(surface: HeightMap, length: float, share: Floats) -> dict[str, float | int | str]:
     """Return the statistics of the hills of a map, by the names of attributes."""
     points = length / max(surface.dx, surface.dy)
-    side_x, side_y = (n * spacing for n, spacing in zip(surface.height.shape, (surface.dx, surface.dy), strict=True))
     return {
         "asperity_model": "hills",
         "wavelength": length,
         "points_per_wave": points,
         "resolution_error": hills_error(points),
-        "border_error": 0.0 if surface.periodic else border_error(length, side_x, side_y),
+        "border_error": border_error(surface, length, HILLS_BY_BORDER),
         "area_share": float(np.mean(share)),
         "anisotropy": slope_ratio(surface),
     }
@@ -135,6 +150,8 @@ def _measure(spline: Spline, rows: Floats, columns: Floats, radius: Floats, poin
             if k > 0:
                 ellipse[2:] *= radius[k - 1] / radius[k]
             mean[k] = improve(hill, radius[k], ellipse)
+            if k > 0 and mean[k] == -math.inf:  # wider than the map
+                mean[k] = top - (top - mean[k - 1]) * (radius[k] / radius[k - 1]) ** 2
             top = max(top, mean[k])
             if k > 0 and radius[k - 1] <= MIDDLE < radius[k]:
                 share = (MIDDLE - radius[k - 1]) / (radius[k] - radius[k - 1])
@@ -142,4 +159,4 @@ def _measure(spline: Spline, rows: Floats, columns: Floats, radius: Floats, poin
                 hills.area_share[i] = area_share(ellipse)
             before = radius[k] * ellipse[2:]
         hills.height[i] = top
-        hills.kept[i] = fill_table(radius, mean, top, points, hills.g[i])
+        hills.kept[i] = mean[0] > -math.inf and fill_table(radius, mean, top, points, hills.g[i])

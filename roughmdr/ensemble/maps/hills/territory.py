@@ -102,6 +102,14 @@ def raw_height(hill: Territory, x: float, y: float) -> float:
     return map_height(hill.map, hill.row + x / hill.map.spacing_x, hill.column + y / hill.map.spacing_y)
 
 
+@_inlined
+def on_map(hill: Territory, x: float, y: float) -> bool:
+    """Return whether a position [wavelength] from the summit is on the map, and not beyond its border."""
+    row, column = hill.row + x / hill.map.spacing_x + 0.5, hill.column + y / hill.map.spacing_y + 0.5
+    nx, ny = hill.map.coefficients.shape
+    return hill.map.periodic or (0.0 <= row <= nx and 0.0 <= column <= ny)
+
+
 @njit
 def top_of(hill: Territory) -> tuple[float, float]:
     """Return the position of the summit [wavelength], relative to the top of the paraboloid through its points."""
