@@ -1,7 +1,7 @@
 """The error that is stated of area, stiffness and gap at given pressure, put to the proof on surfaces drawn at random.
 
-Asperities on a plane, and periodic and cut Gaussian maps with their summits and hills, stand beside boundary elements;
-independent asperities with JKR beside the same in pairs.
+Asperities on a plane, adhesive ones, and periodic and cut Gaussian maps with their summits and hills, stand beside
+boundary elements.
 """
 
 import math
@@ -21,6 +21,9 @@ from roughmdr.numerics.arguments import Floats
 from studies.comparison import HELD, PAIRS, draw_stated, held, in_cases, law_of, panels
 from studies.hills.maps import SIDE, MapCase, hills_of
 from studies.study import Study, table
+from studies.versus_adhesive_bem import by_elements
+from studies.versus_adhesive_bem.cases import FLATTER, PRESSED, STATED, flat_law
+from studies.versus_adhesive_bem.cases import Case as Adhering
 from studies.versus_bem.ensembles import SIZE, Case
 from studies.versus_bem.ensembles import separations as of_asperities
 
@@ -33,8 +36,8 @@ FRACTIONS = np.array([0.003, 0.006, 0.012, 0.025, 0.05, 0.1, 0.15])
 """Contact fractions at which surfaces are pressed, about."""
 SURFACES = {False: 45, True: 3}
 """Number of surfaces in full and in reduced form."""
-ADHERING = {False: 10, True: 1}
-"""Number of those with JKR."""
+_LOADS = {"pressed": (0.25, np.inf), "no load": (-0.25, 0.25), "tension": (-np.inf, -0.25)}
+"""Least and largest load over the largest tension."""
 _POINTS = {False: 384, True: 96}
 _MODELS: dict[str, Any] = {"independent": None, "mean field": "mean_field", "order 1": PAIRS[1], "order 2": PAIRS[2]}
 _CONTROLS = ("separation", "pressure", "contact_fraction")
@@ -44,7 +47,6 @@ _LEAST_POINTS = 3.0  # least points of the grid a mean contact radius
 _STEPS = 30  # steps of the law from one solution of boundary elements to the next
 _SHAPES = ("paraboloid", "paraboloid", "lognormal", "cone", "quartic")
 _PLACEMENTS = ("random", "random", "hard_core 0.5", "hard_core 0.7", "hexagonal", "square")
-_OF_PAIRS = 2e-3  # relative error of coupled asperities, about
 _WORKERS = 2
 _WORDS = {
     "error": ("error of a quantity, of the separation over that of force over stiffness", "1"),
@@ -178,45 +180,56 @@ def compare(task: tuple[int, int, int]) -> list[dict[str, Any]]:
     return rows
 
 
-def compare_adhering(task: tuple[int, int]) -> list[dict[str, Any]]:
-    """Return the errors of independent asperities with JKR against those in pairs, on loading and on unloading."""
-    chance = np.random.default_rng([*task, 1])
-    count = round(math.exp(chance.uniform(math.log(40), math.log(100))))
-    case = Case(str(chance.choice(("random", "hard_core 0.6"))), "paraboloid", count,
-                math.exp(chance.uniform(math.log(0.03), 0.0)), _POINTS[True], task[1])  # fmt: skip
+@np.errstate(divide="ignore", invalid="ignore")  # at the turning point, and where none is in contact
+def compare_adhering(case: Adhering) -> list[dict[str, Any]]:
+    """Return the errors of adhesive asperities, where a load is first reached on loading and on unloading."""
     ensemble = case.generate()
-    height = ensemble["height"].to_numpy()
-    std = float(height.std())
-    stretch = math.exp(chance.uniform(math.log(0.02), math.log(0.4))) * std  # by JKR [m], about
-    work = stretch**1.5
-    along = of_asperities(ensemble, np.array([0.15]))[0]
-    path = np.linspace(height.max() + 2.0 * std, along, 2 * _STEPS)
-    asked: dict[str, Any] = {"separation": path, "work": work, "unload": True, "effective_modulus": 1.0,
-                             "variables": [name for name in _QUANTITIES if name != "separation"]}  # fmt: skip
-    try:
-        alone, pairs = law_of(ensemble, **asked), law_of(ensemble, interaction=PAIRS[2], **asked)
-    except rm.RoughmdrError:
-        return []
+    h = case.separations(ensemble)
+    area, turn, steps = case.size**2, int(np.argmin(h)), np.arange(h.size)
+    fine, coarse = (by_elements(case, ensemble, h, points) for points in (case.points, case.coarse))
+    tension = -float(fine["force"][turn:].min())
+    stiffness, other = (-np.gradient(each["force"], steps) / np.gradient(h, steps) for each in (fine, coarse))
+    truth = {
+        "pressure": fine["force"] / area / FLATTER, "contact_fraction": fine["closed"] / area, "stiffness": stiffness,
+        "separation": h / FLATTER, "load": np.maximum(np.abs(fine["force"]), tension) / area / FLATTER,
+    } | dict.fromkeys(("conductance_radius", "contact_radius_sum"), np.nan * h)  # fmt: skip
+    by_grid = np.abs(coarse["force"] - fine["force"]) / np.maximum(np.abs(fine["force"]), tension)
+    unknown = dict.fromkeys(truth, by_grid) | {"stiffness": np.abs(other / stiffness - 1.0)}
+    unknown["contact_fraction"] = np.abs(coarse["closed"] / fine["closed"] - 1.0)
+    steady = (fine["count"] > 0) & (np.roll(fine["count"], 1) == fine["count"]) & (steps != turn)
+    steady &= (np.roll(fine["count"], -1) == fine["count"]) & (truth["contact_fraction"] < FRACTIONS[-1])
     rows = []
-    for branch in ("loading", "unloading"):
-        pressed = float(pairs["pressure"].max()) * np.array([0.1, 0.3, 0.6, 0.95])
-        found = pairs.roughmdr.at_pressure(pressed, branch=branch)
-        truth = {name: found[name].to_numpy() for name in _QUANTITIES if name != "pressure"} | {"pressure": pressed}
-        reached = np.all([np.isfinite(each) for each in truth.values()], axis=0)
-        truth = {name: values[reached] for name, values in truth.items()}
-        unknown = dict.fromkeys(truth, np.full(np.sum(reached), _OF_PAIRS))
-        labels = {"group": "JKR asperities", "model": f"independent, {branch}", "surface": -1 - task[1]}
-        if reached.any():
-            rows.append(labels | _row(alone, truth, unknown, SIZE, branch))
+    for model, own in STATED.items():
+        if case.asperities == 1 and "interaction" not in own:
+            continue  # its images, which it does not feel, are no part of the comparison
+        law = flat_law(case, ensemble, h, [name for name in _QUANTITIES if name != "separation"], **own)
+        pulled, off = law.roughmdr.pull_off(), np.full((3, len(_ASKED), 1), np.nan)
+        parts = pulled["force"] * FLATTER + tension, pulled["force_model_error"] * FLATTER, 0.0
+        off[:, _ASKED.index(("pressure", "separation")), 0] = np.array(parts) / tension
+        labels = {"group": "adhesive asperities", "surface": -case.seed}
+        rows.append(labels | {"model": f"{model}, pull-off"} | dict(zip(_WORDS, off, strict=True)))
+        for branch, sign, side in (("loading", 1.0, steps <= turn), ("unloading", -1.0, steps >= turn)):
+            force = np.where(side, sign * fine["force"], 0.0 if sign > 0.0 else -np.inf)
+            first = steady & side & (force > np.maximum.accumulate(np.append(force.min(), force))[:-1])
+            for load, (least, most) in _LOADS.items():
+                there = first & (fine["force"] >= least * tension) & (fine["force"] < most * tension)
+                true, floor = ({name: each[there] for name, each in of.items()} for of in (truth, unknown))
+                if there.any():
+                    found = _row(law, true, floor, case.size, branch)
+                    rows.append(labels | {"model": f"{model}, {branch}, {load}"} | found)
     return rows
 
 
 def _row(
     law: xr.Dataset, truth: dict[str, Floats], unknown: dict[str, Floats], side: float, branch: str = "loading"
 ) -> dict[str, Floats]:
-    """Return errors, stated ones and those of boundary elements, [what is asked, step]."""
+    """Return errors, stated ones and those of boundary elements, [what is asked, step]; NaN where there is no truth.
+
+    Errors of the pressure are over the ``load``, if there is one, of the separation over that over the stiffness.
+    """
     error, stated, floor = [], [], []
-    scales = truth | {"separation": truth["pressure"] * side**2 / truth["stiffness"]}
+    load = truth.get("load", truth["pressure"])
+    scales = truth | {"pressure": load, "separation": load * side**2 / np.abs(truth["stiffness"])}
     for control in _CONTROLS:
         values = truth[control]
         found = getattr(law.roughmdr, f"at_{control}")(values, branch=branch)
@@ -232,8 +245,8 @@ def measure(quick: bool) -> xr.Dataset:
     tasks = [(SEED, number, _POINTS[quick]) for number in range(SURFACES[quick])]
     with ProcessPoolExecutor(_WORKERS, mp_context=get_context("spawn")) as pool:
         rows = [row for part in pool.map(compare, tasks) for row in part]
-        adhering = [(SEED, number) for number in range(ADHERING[quick])]
-        rows += [row for part in pool.map(compare_adhering, adhering) for row in part]
+        adhering = pool.map(compare_adhering, PRESSED[:1] if quick else PRESSED)
+        rows += [row for part in adhering for row in part]
     labels = {name: ("case", [row[name] for row in rows]) for name in ("group", "model", "surface")}
     asked = [f"{quantity} at given {control}" for quantity, control in _ASKED]
     return xr.Dataset(in_cases(_WORDS, rows, "case", "asked", "step"), {**labels, "asked": asked})

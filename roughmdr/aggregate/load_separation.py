@@ -25,7 +25,9 @@ from roughmdr.variables import (
     CURVE_VARIABLES,
     DEFAULT_VARIABLES,
     LAW_VARIABLES,
+    OVER_AREA,
     PULL_OFF_NUMBERS,
+    PULL_OFF_PER_AREA,
     RUN_VARIABLES,
     SAMPLE,
 )
@@ -137,6 +139,8 @@ def load_separation(
         names_of_coupling = ["overlap_count", "marked_steps", "grid_points"]
         names_of_coupling += ["avalanche_count", "avalanche_size_max"] if asked.work > 0.0 else []
         errors |= {name: getattr(result, name) for name in names_of_coupling}
+    if result.model == "jkr" and np.isfinite(result.tabor):
+        errors["tabor_number"] = result.tabor
     if "conductance_radius" in names:
         errors["conductance_error"] = result.conductance_error
     data |= {name: Array((), np.array(value), RUN_VARIABLES[name].attrs) for name, value in errors.items()}
@@ -144,6 +148,9 @@ def load_separation(
     if "unloading" in coordinates["branch"].values:
         for variable, number in zip(PULL_OFF_NUMBERS.values(), result.pull_off, strict=True):
             data[variable.name] = Array((), np.array(number), variable.attrs)
+            if asperities.nominal_area is not None and variable.name in OVER_AREA:
+                share = PULL_OFF_PER_AREA[OVER_AREA[variable.name]]
+                data[share.name] = Array((), np.array(number / asperities.nominal_area), share.attrs)
     warnings = [*result.warnings, *result.extremes.warnings]
     fraction, overlap = result.model_error.largest_fraction, result.model_error.overlap
     if coupling is not None and coupling.model == "pairwise":

@@ -10,6 +10,7 @@ from roughmdr.aggregate.detachment import Detachments, detachments
 from roughmdr.kernels.adhesion import Adhesion, tabor_number
 from roughmdr.kernels.choose import choose
 from roughmdr.kernels.interface import Columns
+from roughmdr.model_error.at_force import range_error
 from roughmdr.shapes import SHAPES
 
 SHIFT, _AT_A_CORNER = 5.0, 2.0
@@ -18,10 +19,6 @@ over the Tabor number, std that of the heights: under Dugdale's adhesion contact
 with paraboloids of normal heights, |delta_c|/std from 0.1 to 10, Tabor numbers from 1 to 100, the flat down to 2, 0 and
 -1 std (``pipelines/study.py adhesion_range``): there at most 4.3.
 Rounded punches need no more, however sharp their edges are: contacts detach at nearly the force of JKR."""
-
-
-_PULL_OFF, _MOST_PULL_OFF = 0.09, 1.0 / 3.0
-"""The error of JKR's pull-off force: over the squared Tabor number (1 % at 3), and at most, of DMT, 2 pi w R."""
 
 _JUMP, _JUMP_POWER = 1.6, -4.0 / 7.0
 """Distance before touch from which attraction with a range pulls a contact on, over the stretch at which it detaches:
@@ -86,10 +83,10 @@ def jkr_validity(
         return JkrValidity(0.0, math.inf, math.inf)
     tabor = tabor_number(radius, effective_modulus, adhesion.work, adhesion.strength)
     pull_off = _PER_FOLD * effective_modulus * radius * depth
-    if tabor * tabor == 0.0:  # below any float: DMT
-        return JkrValidity(tabor, math.inf, _MOST_PULL_OFF * pull_off)
+    if tabor == 0.0:  # below any float: DMT
+        return JkrValidity(tabor, math.inf, float(range_error(tabor)) * pull_off)
     sharp = SHAPES[shape].flat and SHAPES[shape].corner
     at_corner = _AT_A_CORNER if sharp else 0.0
     shift = SHIFT * depth / spread if spread > 0.0 else math.inf
-    relative = min(at_corner / tabor + _PULL_OFF / (tabor * tabor), _MOST_PULL_OFF)
+    relative = min(at_corner / tabor + float(range_error(tabor)), float(range_error(0.0)))
     return JkrValidity(tabor, (shift + at_corner) / tabor, relative * pull_off)

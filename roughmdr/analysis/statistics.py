@@ -12,10 +12,11 @@ from roughmdr.analysis.apply import in_one_chunk, over
 from roughmdr.batch.moments import moments_of
 from roughmdr.errors import StoreError
 from roughmdr.loading.path import LoadingPath
+from roughmdr.model_error.at_given import FORCES
 from roughmdr.numerics.arguments import Floats
 from roughmdr.result.cells import of_cells
 from roughmdr.result.curves import result_of, stored_curves
-from roughmdr.result.model_errors import FORCES, errors_along
+from roughmdr.result.model_errors import errors_along
 from roughmdr.result.view import ResultView
 from roughmdr.schema.toml_text import parse_toml
 from roughmdr.storage.labelled import Labelled

@@ -92,6 +92,17 @@ holds, which is 4/3 of it.
 _RANGE, _RANGE_POWER = 0.123, 1.3
 """Error of the pull-off force of JKR at Tabor number 1, and the power with which it falls: 5 % at 2, 1.2 % at 6 of
 contacts in pairs (``pipelines/study.py versus_adhesive_bem``)."""
+RELEASING = 2.5
+"""Error of the force of contacts near their release, over that of their pull-off force: 2.0 to 2.6 of one paraboloid by
+Dugdale's adhesion at Tabor numbers of 1 to 3. On rough surfaces some are near it at the largest tension."""
+_BY_RANGE = (2.0, 0.5, 1.0, 1.0)
+"""Errors of the quantities ``NAMES`` at given force by the range, over that of the pull-off force of one contact: JKR
+counts some of the attracted rim as contact. That of the stiffness is at zero load."""
+_FADING = 0.25
+"""Power of the pull-off forces over the load with which these errors fall beyond: one paraboloid has 0.28."""
+_PULLED = 0.07
+"""Error of half of the pull-off force of independent contacts, over the error of the force by interaction, typically:
+towards the largest tension the stiffness goes to 0 as the distance from it."""
 _PULL_OFF: dict[tuple[Origin, bool], Callable[[Floats], Floats]] = {
     ("asperities", False): lambda fraction: MOST_TENSION * np.sqrt(fraction),
     ("asperities", True): lambda fraction: coupling_error(fraction, np.zeros_like(fraction)),
@@ -104,22 +115,41 @@ _PULL_OFF: dict[tuple[Origin, bool], Callable[[Floats], Floats]] = {
 40 maps (``pipelines/study.py adhesive_hills``)."""
 
 
+def range_error(tabor: Floats | float) -> Floats:
+    """Return the relative error of JKR's pull-off force [1] by the range of the attraction; NaN for an unknown one."""
+    return np.minimum(_RANGE / np.maximum(tabor, _LEAST_TABOR) ** _RANGE_POWER, _DMT)
+
+
+def by_range(of_force: Floats, tabor: Floats, largest: Floats) -> Floats:
+    """Return the error by the range of quantities at given force, in ``_BY_RANGE`` [1], from that of the force.
+
+    ``largest`` is the largest force over the load. Where the Tabor number is not known it is that of the force alone.
+    """
+    alone, over_load = range_error(tabor), of_force * largest
+    share = np.minimum(over_load / np.maximum(alone, np.finfo(np.float64).tiny), 1.0) ** _FADING
+    found = np.where(np.isfinite(tabor), alone * share, over_load)
+    return np.where(of_force > 0.0, np.minimum(found, _DMT), 0.0 * of_force)
+
+
 def relative_at_force(
-    interaction: Floats, fraction: Floats, others: Floats, origin: Floats, grid: Floats
+    interaction: Floats, fraction: Floats, others: Floats, of_range: Floats, left: Floats, *known: Floats
 ) -> list[Floats]:
     """Return the relative errors [1] of the quantities at given force, at most 1: [...] each.
 
     ``interaction`` is the error by interaction of the force at given separation, ``fraction`` the contact fraction,
-    ``others`` are all other parts of the error, ``origin`` the code of ``ORIGINS`` and ``grid`` the points of a grid,
-    0 of pairs, NaN of independent contacts: arrays that go together. NaN where an error is not known.
+    ``others`` are all other parts of the error but that by the range of adhesion: ``of_range`` is that of the pull-off
+    force of JKR, ``left`` the distance of the force from the largest tension, over it, at most 1. ``known`` are the
+    code of ``ORIGINS`` and the points of a grid, 0 of pairs, NaN of independent contacts: arrays that go together. NaN
+    where an error is not known.
     """
-    shape = np.broadcast_shapes(interaction.shape, fraction.shape, origin.shape, grid.shape)
+    shape = np.broadcast_shapes(*(each.shape for each in (interaction, fraction, left, *known)))
     found = [np.full(shape, np.nan) for _ in NAMES]
-    for method, own in _methods(origin, grid):
-        for error, (share, constant, root) in zip(found, method.errors, strict=True):
+    for method, own in _methods(*known):
+        for error, (share, constant, root), factor in zip(found, method.errors, _BY_RANGE, strict=True):
             shared = interaction != 0.0  # not so the load of a lone asperity
             along = share * interaction + shared * constant + shared * root * np.sqrt(fraction)
-            np.copyto(error, along + others, where=own)
+            np.copyto(error, along + others + factor * of_range, where=own)
+    found[STIFFNESS] = found[STIFFNESS] + (1.0 / left - 1.0) * (_BY_RANGE[STIFFNESS] * of_range + _PULLED * interaction)
     touching = np.where(fraction > 0.0, 1.0, 0.0 * fraction)
     return [np.minimum(error, 1.0) * touching for error in found]
 
@@ -147,12 +177,12 @@ def pull_off_error(
     ``interaction`` and ``slope`` are these parts of the model error, the largest of the path. Nothing is known of a
     range that is not given: NaN for the ``tabor`` number.
     """
-    of_range = np.minimum(np.nan_to_num(_RANGE / np.maximum(tabor, _LEAST_TABOR) ** _RANGE_POWER), _DMT)
+    of_range = np.minimum(np.nan_to_num(RELEASING * range_error(tabor)), _DMT)
     found = np.full(np.broadcast_shapes(fraction.shape, origin.shape, grid.shape), np.nan)
     for (kind, pairs), error in _PULL_OFF.items():
         own = (origin == ORIGINS.index(kind)) & (np.isfinite(grid) == pairs)
         np.copyto(found, error(fraction), where=own)
-    return np.minimum(np.where(interaction > 0.0, found, 0.0 * interaction) + of_range + slope, 1.0)
+    return np.minimum(np.hypot(np.where(interaction > 0.0, found, 0.0 * interaction), of_range) + slope, 1.0)
 
 
 def _methods(origin: Floats, grid: Floats) -> Iterator[tuple[Method, NDArray[np.bool_]]]:

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from roughmdr.model_error.at_given import largest_at_force
 from roughmdr.model_error.coupling import MARKED_SHARE, foreseen_error, summits_error
 from roughmdr.model_error.interaction import (
     ASPERITIES,
@@ -20,7 +21,6 @@ from roughmdr.model_error.interaction import (
 from roughmdr.model_error.parts import PARTS, TRUSTED_ERROR, TRUSTED_FRACTION
 from roughmdr.numerics.arguments import Floats
 from roughmdr.result.hardness import hardness_lines
-from roughmdr.result.model_errors import largest_at_force
 from roughmdr.result.view import ResultView
 from roughmdr.schema.units import format_quantity
 from roughmdr.schema.wording import under

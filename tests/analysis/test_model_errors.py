@@ -5,10 +5,13 @@ from typing import Any
 import numpy as np
 import pytest
 import xarray as xr
+from hypothesis import given as drawn
+from hypothesis import settings
+from hypothesis import strategies as st
 from scenes import CONDUCTION, ensemble, scene
 
 import roughmdr as rm
-from roughmdr.model_error.at_force import METHODS, QUANTITIES
+from roughmdr.model_error.at_force import METHODS, NAMES, QUANTITIES, pull_off_error, range_error, relative_at_force
 from roughmdr.result.model_errors import errors_along
 from roughmdr.result.view import ResultView
 from roughmdr.variables import MODEL_ERROR
@@ -216,3 +219,84 @@ def test_the_order_of_dimensions_does_not_matter() -> None:
     for name in (f"{each}{MODEL_ERROR}" for each in ("contact_area", "separation", "stiffness")):
         array = xr.DataArray(errors[name].values, dims=errors[name].dims)
         np.testing.assert_allclose(array.transpose(*swept[name].dims), swept[name], rtol=1e-12)
+
+
+def sticky(work: float, reach: float | None, length: float = 1.0, modulus: float = 1e6) -> xr.Dataset:
+    """Return a law with JKR, pressed and pulled off, with lengths and the modulus in some unit."""
+    made = rm.generate(
+        {"source": "random", "shape": "paraboloid", "count": 30, "patch": 1e-3 * length, "radius": 5e-5 * length,
+         "height": {"distribution": "normal", "std": 1e-6 * length}}, seed=3,
+    )  # fmt: skip
+    kept = {} if reach is None else {"range": reach * length}
+    h = np.linspace(4e-6, 0.5e-6, 200) * length
+    return rm.load_separation(
+        made, separation=h, unload=True, effective_modulus=modulus, work=work * length * modulus, variables=_VARIABLES,
+        **kept,
+    )  # fmt: skip
+
+
+def read_loads(law: xr.Dataset) -> dict[str, list[float]]:
+    """Return the relative errors of a law, pressed, at zero load and at half of the largest tension."""
+    loads = np.array([float(law.force.max()), 0.0, 0.5 * float(law.force.min())])
+    there = law.roughmdr.at_force(loads, branch="unloading")
+    found = {name: (there[f"{name}{MODEL_ERROR}"] / there[name]).to_numpy().tolist() for name in NAMES}
+    return found | {"separation": (there[f"separation{MODEL_ERROR}"] / 1e-6).to_numpy().tolist()}
+
+
+def test_errors_by_range_fall_with_the_tabor_number_to_what_is_left_without() -> None:
+    """At all loads the error is finite and known, and larger the farther attraction reaches."""
+    found = [read_loads(sticky(1e-9, reach)) for reach in (3e-8, 1e-8, 1e-9, 1e-14, 1e-15)]
+    for name in (*NAMES, "separation"):
+        errors = np.array([each[name] for each in found])
+        assert np.isfinite(errors).all()
+        assert (errors > 0.0).all()
+        assert (np.diff(errors, axis=0) < 0.0).all() or name == "stiffness"  # at half of the tension it may be 1
+        np.testing.assert_allclose(errors[3], errors[4], rtol=1e-4)
+    tabor = np.array([1.0, 2.0, 100.0, np.inf])
+    assert range_error(tabor)[-1] == 0.0
+    assert range_error(0.0) == range_error(1e-3) == pytest.approx(1.0 / 3.0)
+
+
+def test_with_next_to_no_adhesion_errors_are_those_without() -> None:
+    """They fall slowly, as the root of the root of the tension over the load."""
+    laws = [sticky(work, 1e-9) for work in (1e-14, 1e-20, 1e-30, 0.0)]
+    loads = np.array([0.3, 0.9]) * float(laws[-1].force.max())
+    there = [law.roughmdr.at_force(loads) for law in laws]
+    for name in (*NAMES, "separation"):
+        errors = [each[f"{name}{MODEL_ERROR}"].to_numpy() for each in there]
+        assert (np.diff(errors, axis=0) <= 0.0).all()
+        np.testing.assert_allclose(errors[2], errors[3], rtol=1e-3)
+
+
+def test_errors_of_adhesive_contacts_are_the_same_in_other_units() -> None:
+    first, other = read_loads(sticky(1e-9, 1e-7)), read_loads(sticky(1e-9, 1e-7, 1e-3, 1e11))
+    for name in NAMES:
+        assert first[name] == pytest.approx(other[name], rel=1e-6)
+
+
+@settings(deadline=None)
+@drawn(st.floats(0.0, 1.0), st.floats(0.0, 0.3), st.floats(0.0, 1.0 / 3.0), st.floats(1e-12, 1.0))
+def test_errors_by_range_grow_with_it_and_the_stiffness_is_lost_at_the_largest_tension(
+    interaction: float, fraction: float, by_jkr: float, left: float
+) -> None:
+    def errors(by_jkr: float, left: float) -> list[float]:
+        known = (np.array([value]) for value in (interaction, fraction, 0.0, by_jkr, left, 0.0, 0.0))
+        return [float(each[0]) for each in relative_at_force(*known)]
+
+    found, without, far = errors(by_jkr, left), errors(0.0, left), errors(by_jkr, 1.0)
+    assert all(0.0 <= low <= each <= 1.0 for low, each in zip(without, found, strict=True))
+    assert far[1] <= found[1]
+    assert far[0] == found[0]
+    if by_jkr > 1e-3 and fraction > 0.0:
+        assert errors(by_jkr, 1e-6)[1] == 1.0
+
+
+def test_the_pull_off_force_of_a_law_has_the_error_by_range_too() -> None:
+    """That of a range that is not given is left out."""
+    told, untold = (sticky(1e-9, reach) for reach in (1e-7, None))
+    errors = [float(law.roughmdr.pull_off()["force_model_error"]) for law in (told, untold)]
+    assert errors[0] > errors[1] > 0.0
+    numbers = (told[name].to_numpy() for name in ("interaction_error", "slope_error", "asperity_origin"))
+    fraction, tabor = (told[name].to_numpy() for name in ("pull_off_contact_fraction", "tabor_number"))
+    share = float(pull_off_error(fraction, tabor, *numbers, np.array(np.nan)))
+    assert errors[0] == pytest.approx(share * abs(float(told.pull_off_force)), rel=1e-12)

@@ -12,6 +12,7 @@ from scenes import ASPERITIES, scene
 
 import roughmdr as rm
 from roughmdr.cli import main
+from roughmdr.model_error.at_force import RELEASING
 from roughmdr.pictures.curves import Quantity, curves_of
 from roughmdr.pictures.style import BRANCH_COLOURS
 from roughmdr.result.view import ResultView
@@ -293,12 +294,14 @@ def test_the_band_of_the_model_error_is_over_the_largest_force_where_the_error_i
     down, back, error = curves[0].model_error, curves[-1], error.values.ravel()
     largest = max(np.abs(each.middle).max() for each in curves)
     assert (down[:2] > 0.0).tolist() == [False, hills]
-    loads = [abs(float(curves[0].middle[2])), abs(float(back.middle[-1]))]
-    for load, at, drawn in zip(loads, error[2:], (down[2], back.model_error[-1]), strict=True):
-        by_jkr = at if hills else float(made.adhesion_range_error.max())
+    forces = [float(curves[0].middle[2]), float(back.middle[-1])]
+    of_range = float(made.adhesion_range_error.max())
+    for force, at, drawn in zip(forces, error[2:], (down[2], back.model_error[-1]), strict=True):
+        by_jkr = at if hills else of_range
         assert by_jkr > 0.0
         own, tension = at - by_jkr, max(-each.middle.min() for each in curves)
-        expected = max(load, tension) * own / (1.0 - min(own, 0.9)) + largest * by_jkr
+        expected = max(abs(force), tension) * own / (1.0 - min(own, 0.9)) + largest * by_jkr
+        expected += (RELEASING - 1.0) * largest * of_range if force < 0.0 else 0.0
         assert drawn == pytest.approx(expected, rel=1e-12)
     earlier = ResultView(made.drop_vars(["asperity_origin", "border_error"]))  # by a version that did not know these
     same = list(curves_of(earlier, Quantity.of(earlier, "force"), Quantity.of(earlier, "separation")))

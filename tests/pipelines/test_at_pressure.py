@@ -10,7 +10,7 @@ from studies.at_pressure import STUDY
 def test_the_stated_errors_bound_most_of_the_true_ones(tmp_path_factory: pytest.TempPathFactory) -> None:
     with carried_out(STUDY, tmp_path_factory.mktemp("at_pressure")) as studied:
         result = studied.result
-        assert {"asperities", "cut summits", "cut hills", "JKR asperities"} == set(result["group"].values.tolist())
+        assert {"asperities", "cut summits", "cut hills", "adhesive asperities"} == set(result["group"].values.tolist())
         assert all(f"| {name} at given pressure |" in studied.text for name in ("contact_fraction", "stiffness"))
         assert (studied.folder / "at_pressure.png").stat().st_size > 5000
         error, stated, unknown = (result[name].to_numpy() for name in ("error", "stated", "unknown"))
