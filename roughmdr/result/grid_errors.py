@@ -10,16 +10,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from roughmdr.result.curves import Read
+from roughmdr.stages.reference import OF_AREA
 from roughmdr.variables import LAW_VARIABLES, SEPARATION
 
 if TYPE_CHECKING:
     import xarray as xr
 
 _FORCE, _H = "reference_force", SEPARATION.name
-_OF_AREA = {_FORCE: 0.0, "reference_pressure": 0.0, "reference_contact_area": 1.0, "reference_contact_fraction": 1.0}
-_OF_AREA |= dict.fromkeys(("reference_stiffness", "reference_conductance_radius"), 0.5)
-_OF_AREA |= dict.fromkeys(("reference_thermal_conductance", "reference_electrical_conductance"), 0.5)
-"""Relative error of a curve at given force over that of the contact area."""
 
 
 def grid_errors(read: dict[str, Read], at: str) -> "dict[str, xr.DataArray]":
@@ -34,20 +31,20 @@ def grid_errors(read: dict[str, Read], at: str) -> "dict[str, xr.DataArray]":
 
     def slope(name: str, over: str) -> "xr.DataArray":
         run, base = read[over].rise, read[over].value
-        where_path_turns = read[name].value / base.where(base > 0.0, np.inf) if name in _OF_AREA else np.nan
+        where_path_turns = read[name].value / base.where(base > 0.0, np.inf) if name in OF_AREA else np.nan
         return abs(read[name].rise / run.where(run != 0.0)).where(run != 0.0, where_path_turns)
 
     def own(name: str) -> "xr.DataArray":
         if name == _H:
             return slope(_H, _FORCE) * of_force
-        return _OF_AREA[name] * read["reference_area_error"].value * read[name].value
+        return OF_AREA[name] * read["reference_area_error"].value * read[name].value
 
-    of_reference = at in _OF_AREA
+    of_reference = at in OF_AREA
     over, given = (at, own(at)) if of_reference else (_FORCE, of_force)
     errors = {}
-    for name in sorted((read.keys() & {*_OF_AREA, *([_H] * of_reference)}) - {at}):
+    for name in sorted((read.keys() & {*OF_AREA, *([_H] * of_reference)}) - {at}):
         total = (own(name) ** 2 + (slope(name, over) * given) ** 2) ** 0.5
-        total *= _OF_AREA.get(name) != _OF_AREA.get(at)  # pressure follows from force, the fraction from the area
+        total *= OF_AREA.get(name) != OF_AREA.get(at)  # pressure follows from force, the fraction from the area
         about = f"error of the {name.removeprefix('reference_').replace('_', ' ')} by the grid of boundary elements"
         total.attrs = {"units": LAW_VARIABLES[name].units, "long_name": about}
         errors[f"reference_{read[name].label.removeprefix('reference_')}_error"] = total

@@ -18,13 +18,25 @@ if TYPE_CHECKING:
     from roughmdr.aggregate.law import LoadSeparation
     from roughmdr.ensemble import Ensemble
     from roughmdr.loading.lateral import Path
-    from roughmdr.numerics.arguments import Floats
 
+_CONTROLS = ("separation", "force", "pressure")
 _ERRORS = 1e-3, 0.5
+"""Least and largest error of the force [1] that can be asked for."""
 _ALWAYS = ("reference_force", "reference_error", "reference_area_error")
 _AREAS = "reference_contact_area", "reference_contact_fraction"
+OF_AREA = {"reference_force": 0.0, "reference_pressure": 0.0}
+OF_AREA |= dict.fromkeys(("reference_contact_area", "reference_contact_fraction"), 1.0)
+OF_AREA |= dict.fromkeys(("reference_stiffness", "reference_conductance_radius"), 0.5)
+OF_AREA |= dict.fromkeys(("reference_thermal_conductance", "reference_electrical_conductance"), 0.5)
+"""Relative error of a variable at given force over that of the contact area, by the grid."""
 _STEP, _POINT = 5e-3, 3e-6
 """Seconds of a separation, and of a point there on all its grids."""
+_COARSEST = 0.02
+"""Error of the force [1] where none is asked for; a coarser grid may not have the contacts of a map at all."""
+_EDGES = 0.6
+"""Error of the contact area by the edges of contacts over the root of the error of the force, on one grid."""
+_LOOKS = 4.0
+"""Separations that are tried for a load."""
 _ALONE, _BYTES = 4.0, 160
 """Factor on the points around a surface that stands alone; bytes of a point."""
 
@@ -45,16 +57,17 @@ class Reference(Stage):
 
     model: Literal["boundary_elements"]
     """Method."""
-    error: Annotated[float, Quantity("1", at_least=_ERRORS[0], at_most=_ERRORS[1])] = 0.02
+    error: Annotated[float, Quantity("1", at_least=_ERRORS[0], at_most=_ERRORS[1])] = _COARSEST
     """Relative error of its force by the grid."""
 
     def check(self, scene: Given) -> None:
         """Raise a mismatch with adhesion, and with other paths."""
         if scene.work > 0.0:
             raise mismatch("reference", "does not go with adhesion: boundary elements press without it")
-        if scene.path.control != "separation":
-            instead = "path.separation = { stop = { pressure = ... } } loads to a pressure"
-            raise mismatch("reference", f"goes with path.separation, not with path.{scene.path.key}; {instead}")
+        if scene.path.lateral is not None:
+            raise mismatch("reference", "does not go with path.lateral")
+        if scene.path.control not in _CONTROLS:
+            raise mismatch("reference", f"goes with path.{', path.'.join(_CONTROLS)}, not with path.{scene.path.key}")
 
     def reason_against(self, estimator: str) -> str:
         """Return that the expected law has no surface to press."""
@@ -86,7 +99,24 @@ class Reference(Stage):
 
         along = LARGEST_GRID if finest else first_points(scene.asperities.expected_count, self.error)
         points = along**2 * (1.0 if scene.repeats else _ALONE)
-        return separations * (_STEP + _POINT * points), _BYTES * points
+        looks = separations * (1.0 if scene.path.control == "separation" else _LOOKS)
+        return looks * (_STEP + _POINT * points), _BYTES * points
+
+    @staticmethod
+    def error_for(name: str, error: float, *, at_force: bool) -> float:
+        """Return the error of the force by a grid on which a variable has a relative ``error``, about."""
+        of_area = OF_AREA.get(name, 0.0) if at_force else 0.0
+        return min(max((error / (_EDGES * of_area)) ** 2 if of_area else error, _ERRORS[0]), _COARSEST)
+
+    def error_of(self, name: str, summits: float, *, at_force: bool) -> float:
+        """Return the relative error of a variable by the grid, about: at given force that of the edges of contacts.
+
+        So many ``summits`` may be more than the largest grid resolves.
+        """
+        from roughmdr.elements.refine import least_error
+
+        of_area, error = OF_AREA.get(name, 0.0) if at_force else 0.0, max(self.error, least_error(summits))
+        return _EDGES * of_area * math.sqrt(error) if of_area else error
 
     def plan_lines(self, longest: str, finest: str) -> Iterator[str]:
         """Yield the time and memory that the reference adds to each run."""
@@ -100,34 +130,42 @@ class Reference(Stage):
         drawn = contacts.drawn
 
         def law(path: "Path", names: list[str]) -> "LoadSeparation":
-            from roughmdr.loading.path import LoadingPath
-
-            assert isinstance(path, LoadingPath)  # ``check`` makes sure
             asked = [name for name in names if name not in REFERENCE_VARIABLES]
-            return self._beside(contacts.law(path, asked).only(asked), scene, path.separation, drawn)
+            return self._beside(contacts.law(path, asked).only(asked), scene, path, drawn)
 
         return law
 
-    def _beside(self, law: "LoadSeparation", scene: Given, separation: "Floats", drawn: Drawn) -> "LoadSeparation":
+    def _beside(self, law: "LoadSeparation", scene: Given, path: "Path", drawn: Drawn) -> "LoadSeparation":
         """Return the law of a realisation with the variables of its reference; NaN where that has no equilibrium."""
-        from roughmdr.elements.refine import errors, solve_to_error
+        from roughmdr.elements.refine import errors, solve_to_error, solve_under_loads
         from roughmdr.elements.surface import surface_of
+        from roughmdr.loading.machine import MachinePath
 
         ensemble = drawn.ensemble
         height_map = scene.asperities.height_map(scene.seed, drawn.realization)
-        surface = surface_of(ensemble, height_map, float(separation.min()), periodic=scene.repeats)
+        loaded = isinstance(path, MachinePath)
+        separation = law.variables["separation"] if loaded else path.values
+        highest = float(ensemble.height.max())
+        lowest = float(np.fmin.reduce(separation, initial=highest))
+        lowest -= (highest - lowest) if loaded else 0.0  # with neighbours a load presses the flat deeper
+        surface = surface_of(ensemble, height_map, lowest, periodic=scene.repeats)
+        given = surface, separation, scene.effective_modulus, self.error
         stiffness = not {"stiffness", RADIUS}.isdisjoint(of_contacts(law.variables))
-        found = solve_to_error(surface, separation, scene.effective_modulus, self.error, stiffness=stiffness)
+        if isinstance(path, MachinePath):
+            separation, found = solve_under_loads(*given, -path.demand)
+        else:
+            found = solve_to_error(*given, stiffness=stiffness)
         numbers = [
             (step.force, step.area, step.contacts, step.stiffness, step.error, step.area_error) for step in found.steps
         ]
         force, area, count, slope, error, area_error = np.array(numbers).T
         solved, missed = np.isfinite(error), np.where(error > 0.0, 1.0, 0.0)
-        loaded = (force > 0.0) & solved
+        bears = (force > 0.0) & solved
         patch, radius = ensemble.nominal_area or math.nan, 0.5 * slope / scene.effective_modulus
         conduction = scene.stage(Conduction)
         conductances = {} if conduction is None else conduction.conductances(radius)
         values = {
+            "reference_separation": separation,
             "reference_force": force,
             "reference_contact_area": area,
             "reference_contact_count": count,
@@ -136,11 +174,13 @@ class Reference(Stage):
             "reference_contact_fraction": area / patch,
             "reference_conductance_radius": radius,
             **{f"reference_{name}": value for name, value in conductances.items()},
-            "reference_error": np.divide(error, force, out=missed.copy(), where=loaded).clip(max=1.0),
-            "reference_area_error": np.divide(area_error, area, out=missed.copy(), where=loaded).clip(max=1.0),
+            "reference_error": np.divide(error, force, out=missed.copy(), where=bears).clip(max=1.0),
+            "reference_area_error": np.divide(area_error, area, out=missed.copy(), where=bears).clip(max=1.0),
         }
         beside = {name: np.where(solved, values[name], math.nan) for name in self.more_variables(list(law.variables))}
-        remarks = _remarks(float(errors(found).max()), self.error, found.shape, int(np.sum(~solved)))
+        remarks = _remarks(
+            float(errors(found).max()), self.error, found.shape, int(np.sum(~solved & np.isfinite(separation)))
+        )
         return law._replace(
             variables=law.variables | beside,
             reference_points=float(math.prod(found.shape)),

@@ -63,6 +63,7 @@ WITH_MODEL_ERROR = (
 """Variables whose error of the model can be told."""
 
 REFERENCE_VARIABLES = declare(
+    ("reference_separation", "m", "rigid flat above the datum plane under the same load by boundary elements"),
     ("reference_force", "N", "normal force by boundary elements"),
     ("reference_contact_area", "m2", "contact area by boundary elements"),
     ("reference_contact_count", "1", "number of connected contacts by boundary elements"),

@@ -227,8 +227,8 @@ def test_a_result_without_its_reference_is_extended(tmp_path: Path) -> None:
     [
         ({"adhesion": {"model": "jkr", "work": 1e-3}}, "reference: does not go with adhesion"),
         (
-            {"path": {"force": {"stop": "1 uN", "steps": 3}}},
-            "path.separation = { stop = { pressure = ... } } loads to a",
+            {"path": {"preload": "1 uN", "steps": 3}},
+            "goes with path.separation, path.force, path.pressure, not with path.preload",
         ),
         ({"reference": {"model": "boundary_elements", "error": 0.0}}, "at least 0.001"),
         ({"reference": {}}, "reference.model"),
@@ -321,3 +321,48 @@ def test_the_error_is_relative_to_the_force_that_is_asked_for() -> None:
     off = np.abs(coarse["reference_force"] / fine["reference_force"] - 1.0).fillna(0.0)  # out of contact
     assert (off <= coarse["reference_error"] + fine["reference_error"]).all()
     np.testing.assert_array_equal(fine["force"], coarse["force"])
+
+
+def test_under_a_load_it_stands_where_it_bears_that_load(result: xr.Dataset) -> None:
+    """The way back: the separations that loads lead to bear these loads, with the same other numbers."""
+    loads = result["reference_force"][0].to_numpy()
+    path = {"force": [0.0, *(float(load) for load in loads)]}
+    found = rm.run(of_spectrum(path=path, batch={"realizations": 1})).isel(realization=0)
+    np.testing.assert_allclose(found["reference_force"][1:], loads, rtol=1e-3)
+    assert found["reference_force"][0] == 0.0
+    separation = found["reference_separation"].to_numpy()
+    back = rm.run(of_spectrum(path={"separation": [float(h) for h in separation]}, batch={"realizations": 1}))
+    for name in ("force", "contact_area", "stiffness"):
+        np.testing.assert_allclose(back[f"reference_{name}"][0], found[f"reference_{name}"], rtol=0.02)
+    off = np.abs(separation[1:] - result["separation"].to_numpy())
+    assert (off <= 0.02 * loads / found["reference_stiffness"][1:].to_numpy()).all()
+
+
+@pytest.mark.parametrize(("length", "modulus"), [(1.0, 1.0), (1e-9, 1e9), (1e3, 1e-3)])
+def test_a_lone_sphere_under_a_load_is_that_of_Hertz(length: float, modulus: float, tmp_path: Path) -> None:
+    alone = xr.Dataset(
+        {name: ("asperity", [value]) for name, value in {"height": 0.0, "radius": length, "x": 0.0, "y": 0.0}.items()},
+        attrs={"shape": "paraboloid"},
+    )
+    alone.to_netcdf(tmp_path / "one.nc")
+    loads = modulus * length**2 * np.array([5e-4, 1e-3])
+    found = rm.run({
+        "title": "One", "material": {"effective_modulus": modulus},
+        "asperities": {"source": "file", "file": str(tmp_path / "one.nc")},
+        "interaction": {"model": "pairwise", "boundary": "free"}, "reference": {**ELEMENTS, "error": 0.005},
+        "path": {"force": [float(load) for load in loads]},
+    }).isel(realization=0)  # fmt: skip
+    depth = (9.0 * loads**2 / (16.0 * length * modulus**2)) ** (1.0 / 3.0)
+    np.testing.assert_allclose(-found["reference_separation"], depth, rtol=0.005)
+    off = np.abs(found["reference_contact_area"] / (np.pi * length * depth) - 1.0)
+    # A lone disc in the middle of a grid has edges that are off all alike: more than the mean of many is.
+    assert (off <= 1.5 * found["reference_area_error"]).all()
+
+
+def test_loads_that_pull_the_flat_off_have_no_reference() -> None:
+    found = rm.run(of_spectrum(path={"pressure": ["10 kPa", "0 Pa", "-1 kPa"]}, batch={"realizations": 1}))
+    force = found["reference_force"][0].to_numpy()
+    assert force[0] > 0.0
+    assert force[1] == 0.0
+    assert np.isnan(force[2])
+    np.testing.assert_allclose(force[0], 1e4 * float(found["nominal_area"]), rtol=5e-3)
