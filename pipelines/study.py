@@ -20,7 +20,7 @@ TOGETHER = (
 )  # fmt: skip
 """Studies that "all" carries out, one after the other."""
 MODULES = {
-    **{name: f"studies.{name}" for name in (*TOGETHER, "accuracy", "asperity_error")},
+    **{name: f"studies.{name}" for name in (*TOGETHER, "accuracy", "asked", "asperity_error")},
     **{name: f"figures.{name}" for name in ("adhesion_range", "interaction", "springs", "summits")},
     **{name: f"benchmarks.{name}" for name in ("batch", "foreseen", "scaling")},
     "one_asperity": "figures.one_asperity_pictures",

@@ -15,7 +15,6 @@ import roughmdr as rm
 from roughmdr.batch.moments import Moments, MomentTree, block_moments
 from roughmdr.batch.stopping_rule import FIRST, next_count, relative_error
 from roughmdr.numerics.arguments import Floats
-from roughmdr.scene.sections import Accuracy
 from studies.study import Figure, Study, blank, named, table, without_limits
 
 
@@ -62,14 +61,13 @@ class ForceSamples(NamedTuple):
 
     def stop_as_a_batch(self, draws: np.ndarray, error: float) -> int:
         """Return how many of these draws a batch makes before it stops at ``error``."""
-        accuracy, moments = Accuracy(relative=error, max_realizations=len(draws)), MomentTree[Moments]()
-        count, target = 0, FIRST
+        moments, count, target = MomentTree[Moments](), 0, FIRST
         while count < target:
             for first, block in block_moments(count, self.force[draws[count:target]]):
                 moments.add(first, block)
             total = moments.total(target)
             assert total is not None
-            count, target = target, next_count(target, relative_error(total), accuracy)
+            count, target = target, next_count(target, relative_error(total), error, len(draws))
         return count
 
     def stop_naively(self, draws: np.ndarray, error: float) -> int:

@@ -26,12 +26,12 @@ class CollectedResults(NamedTuple):
 class Collector:
     """Results so far: as curves, or as moments, which take no more memory the more realisations there are.
 
-    Moments of a ``watched`` variable are kept beside curves too.
+    Moments are kept beside curves too where a variable is ``watched``.
     """
 
     def __init__(self, variables: Sequence[str], steps: int, *, keep_moments: bool, watched: str | None = None) -> None:
-        self._shape, self._keep_moments = (len(variables), steps), keep_moments
-        self._watched = None if watched is None else tuple(variables).index(watched)
+        self._variables, self._shape, self._keep_moments = tuple(variables), (len(variables), steps), keep_moments
+        self._watched = None if watched is None else self._variables.index(watched)
         self._results: list[TaskResult] = []
         self._trees: dict[str, MomentTree[Moments]] = {}
         self._pull_offs: dict[str, MomentTree[KnownMoments]] = {}
@@ -44,14 +44,13 @@ class Collector:
             self._results.append(result)
             if self._watched is None:
                 return
-        part = np.s_[:] if self._keep_moments else np.s_[self._watched]
         rows_of: dict[str, list[int]] = {}
         columns = result.cell, result.first, result.diagnostics["status"], result.diagnostics["remark"]
         for row, (cell, first, status, remark) in enumerate(zip(*(each.tolist() for each in columns), strict=True)):
             key = result.keys[cell]
             rows_of.setdefault(key, []).append(row)
             if status != FAILED:
-                self._trees.setdefault(key, MomentTree()).add(first, result.moments_of(row).select(part))
+                self._trees.setdefault(key, MomentTree()).add(first, result.moments_of(row))
                 self._pull_offs.setdefault(key, MomentTree()).add(first, result.pull_off_of(row))
             if remark:  # of the realisation that comes first, whichever is done first
                 self._remarks[key] = min((first, remark), self._remarks.get(key, (first, remark)))
@@ -68,7 +67,13 @@ class Collector:
     def watched(self, key: str, count: int) -> Moments | None:
         """Return the moments of the watched variable over the first realisations of a cell; None where some failed."""
         total = self._total(key, count)
-        return total.select(self._watched) if self._keep_moments and total is not None else total
+        return None if total is None else total.select(self._watched)
+
+    def means(self, key: str, count: int) -> dict[str, Floats]:
+        """Return the mean of each variable, [step], over the first realisations of a cell, none of which failed."""
+        total = self._total(key, count)
+        assert total is not None
+        return dict(zip(self._variables, total.mean, strict=True))
 
     def _total(self, key: str, count: int) -> Moments | None:
         return self._trees[key].total(count) if key in self._trees else None

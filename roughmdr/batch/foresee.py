@@ -9,10 +9,13 @@ from roughmdr.aggregate import LoadingPath, LoadSeparation
 from roughmdr.batch.costs import paired_seconds
 from roughmdr.batch.plan import Cell, Plan
 from roughmdr.batch.realization import simulate_ensemble, simulate_realization
+from roughmdr.ensemble import Ensemble
 from roughmdr.errors import RoughmdrError, TooMuchContact
 from roughmdr.interaction import Interaction
 from roughmdr.interaction.placed import part_of
 from roughmdr.interaction.settings import reason_against_adhesion
+from roughmdr.loading.lateral import Path
+from roughmdr.loading.machine import MachinePath
 from roughmdr.scene import Scene
 from roughmdr.variables import LATERAL
 
@@ -53,7 +56,7 @@ class Prospect(NamedTuple):
 def foresee_cells(plan: Plan) -> Prospect:
     """Foresee some cells of a plan, evenly chosen, the first and the last among them."""
     foreseen, failures = [], []
-    for number in _some_cells(plan, _MAX_CELLS):
+    for number in some_cells(plan, _MAX_CELLS):
         cell = plan.cells[number]
         separation, most = cell.path.separation, _MAX_PAIRED_STEPS if cell.scene.needs_positions else _MAX_STEPS
         steps = int(min([most, *(stage.most_foreseen for stage in cell.scene.stages)]))
@@ -77,7 +80,7 @@ def foresee_cells(plan: Plan) -> Prospect:
     return Prospect(tuple(foreseen), tuple(failures), coupled, plan.scene.interaction)
 
 
-def _some_cells(plan: Plan, most: int) -> list[int]:
+def some_cells(plan: Plan, most: int) -> list[int]:
     """Return the numbers of ``most`` cells at most, evenly chosen, the first and the last among them."""
     numbers: list[int] = np.unique(np.linspace(0, len(plan.cells) - 1, most).astype(int)).tolist()
     return numbers
@@ -88,7 +91,7 @@ def check_foreseen(plan: Plan) -> None:
 
     The runs of the others tell it themselves, as do those of cells without random asperities, and expected laws.
     """
-    checked = _some_cells(plan, _MAX_CHECKED)
+    checked = some_cells(plan, _MAX_CHECKED)
     refused = [
         (number, reason)
         for number, cell in ((number, plan.cells[number]) for number in checked)
@@ -115,22 +118,43 @@ def _reason(cell: Cell) -> str:
 
 def _foreseen(scene: Scene, path: LoadingPath) -> Foreseen:
     """Return the law of a part of the asperities on a part of the patch; coupled in pairs, never on a grid."""
+    ensemble = _part(scene)
+    variables = ["force"] if ensemble.nominal_area is None else ["force", "contact_fraction", "pressure"]
+    law = _law_of_part(scene, path, ensemble, variables)
+    area = math.nan if ensemble.nominal_area is None else ensemble.nominal_area
+    return Foreseen(path, law, law.pull_off.contact_area / area, summits=ensemble.origin == "summits")
+
+
+def foresee_law(cell: Cell, variables: list[str]) -> LoadSeparation:
+    """Return the law of a part of the asperities along the path that is controlled, under so much less of a load."""
+    ensemble, path = _part(cell.scene), cell.controlled
+    if isinstance(path, MachinePath) and path.machine.is_dead_load:
+        path = path._replace(demand=path.demand * _share(cell.scene, ensemble))
+    return _law_of_part(cell.scene, path, ensemble, variables)
+
+
+def _part(scene: Scene) -> Ensemble:
+    """Return a part of the asperities of a scene; in pairs fewer."""
     source, paired = scene.asperities, scene.needs_positions
     count = _MAX_PAIRED if paired else _MAX_ASPERITIES
     if scene.interaction is not None and scene.interaction.boundary == "free" and not paired:
         count = math.ceil(source.expected_count)  # a larger patch sinks deeper under a pressure
     stratified = not source.reason_against("stratified")
     ensemble = source.limited_to(count).ensemble(scene.seed, 0, stratified=stratified, with_positions=paired)
-    if paired:
-        ensemble = part_of(ensemble, count)
-    variables = ["force"] if ensemble.nominal_area is None else ["force", "contact_fraction", "pressure"]
-    law = simulate_ensemble(_coarse(scene.without_grid), path, ensemble, variables)
-    area = math.nan if ensemble.nominal_area is None else ensemble.nominal_area
-    if source.nominal_area is not None:
-        share = area / source.nominal_area
-        scatter = {name: getattr(law, name) * math.sqrt(share) for name in ("sampling_error", "area_sampling_error")}
-        law = law._replace(effective_contacts=law.effective_contacts / share, **scatter)
-    return Foreseen(path, law, law.pull_off.contact_area / area, summits=ensemble.origin == "summits")
+    return part_of(ensemble, count) if paired else ensemble
+
+
+def _share(scene: Scene, part: Ensemble) -> float:
+    """Return the share of the nominal area that a part of the asperities stands on; 1 where that is not known."""
+    whole = scene.asperities.nominal_area
+    return 1.0 if whole is None or part.nominal_area is None else part.nominal_area / whole
+
+
+def _law_of_part(scene: Scene, path: Path, part: Ensemble, variables: list[str]) -> LoadSeparation:
+    """Return the law of a part of the asperities, with the number of contacts and the scatter of all."""
+    law, share = simulate_ensemble(_coarse(scene.without_grid), path, part, variables), _share(scene, part)
+    scatter = {name: getattr(law, name) * math.sqrt(share) for name in ("sampling_error", "area_sampling_error")}
+    return law._replace(effective_contacts=law.effective_contacts / share, **scatter)
 
 
 def _foreseen_curved(scene: Scene, path: LoadingPath) -> Foreseen:

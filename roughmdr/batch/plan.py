@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roughmdr.aggregate import LoadingPath
+from roughmdr.batch.choice import Choice
 from roughmdr.batch.path_ends import PathFinder
 from roughmdr.batch.usual_path import machine_path, usual_path
 from roughmdr.errors import SceneError
@@ -56,6 +57,7 @@ class Plan(NamedTuple):
     cells: tuple[Cell, ...]
     left_out: tuple[str, ...]  # lines "part: reason"
     path_notes: tuple[str, ...] = ()  # which separations "clear" and targets came to
+    choice: Choice | None = None  # how a quantity is computed that is asked for
 
     @property
     def sizes(self) -> dict[str, int]:
@@ -70,7 +72,7 @@ class Plan(NamedTuple):
     @property
     def watched(self) -> str:
         """The variable that [accuracy] is about."""
-        return self.cells[0].controlled.watched
+        return self.cells[0].controlled.watched if self.choice is None else self.choice.variable
 
     @property
     def keeps_statistics(self) -> bool:
@@ -90,9 +92,8 @@ class Plan(NamedTuple):
     @property
     def variables(self) -> list[str]:
         """The variables of the result over its steps."""
-        asked = self.scene.output.variables
-        added = (name for stage in self.scene.stages for name in stage.more_variables(asked))
-        return [*self.cells[0].controlled.variables(asked), *added]
+        asked = self.cells[0].controlled.variables(self.scene.output.variables)
+        return [*asked, *(name for stage in self.scene.stages for name in stage.more_variables(asked))]
 
     @property
     def warnings(self) -> list[str]:

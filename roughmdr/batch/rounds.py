@@ -3,11 +3,12 @@
 import math
 from typing import NamedTuple
 
+from roughmdr.batch.choice import Choice
 from roughmdr.batch.collect import Collector
 from roughmdr.batch.costs import seconds
 from roughmdr.batch.plan import Plan
 from roughmdr.batch.resume.keys import keys_of
-from roughmdr.batch.stopping_rule import FIRST, is_enough, missing_count, next_count, relative_error
+from roughmdr.batch.stopping_rule import FEWEST, FIRST, error_at, is_enough, missing_count, next_count, relative_error
 from roughmdr.batch.tasks import RunRange
 from roughmdr.batch.unmet import RareAsperities
 from roughmdr.scene.sections import Accuracy
@@ -21,8 +22,10 @@ class CellMethod(NamedTuple):
     estimator: str
     realizations: int
     error: float = math.nan
-    """Error of the mean force over its largest value, of draws the standard error; NaN where not known."""
+    """Error of the mean force over its largest value, of draws the standard error, or the whole one of a quantity that
+    is asked for; NaN where not known."""
     drawn_error: float = math.nan  # standard error of the draws alone, without asperities that they may not have met
+    model_error: float = math.nan  # of a quantity that is asked for, as the first realisations tell it
 
 
 class CellHistory(NamedTuple):
@@ -91,7 +94,10 @@ class Rounds:
 
     def _first_count(self, accuracy: Accuracy) -> int:
         """Return how many realisations to begin with."""
-        return min(max(self._plan.scene.batch.realizations, FIRST), accuracy.max_realizations)
+        scene, fewest = self._plan.scene, FIRST if self._plan.choice is None else FEWEST
+        return (
+            min(max(scene.batch.realizations, fewest), accuracy.max_realizations) if scene.asperities.is_random else 1
+        )
 
     def _is_dearer(self, cell: int, realizations: float) -> bool:
         """Return whether so many realisations cost more than the expected law."""
@@ -100,11 +106,14 @@ class Rounds:
 
     def _judge(self, cell: int, history: CellHistory, collector: Collector, accuracy: Accuracy) -> CellHistory:
         """Accept the cell with its error, extend it, or switch its method."""
+        if self._plan.choice is not None:
+            return self._judge_quantity(cell, history, collector, self._plan.choice, accuracy.max_realizations)
+        asked = accuracy.share
         if history.method.estimator != "expected":
             return self._judge_draws(cell, history, collector, accuracy)
         diagnostics = collector.diagnostics(history.method.key)
         expected = history.method._replace(error=float(diagnostics["numerical_error"]))
-        met = diagnostics["status"] == DONE and expected.error <= accuracy.relative
+        met = diagnostics["status"] == DONE and expected.error <= asked
         if accuracy.method == "expected" or met:
             return history._replace(method=expected)
         if history.draws is None:
@@ -113,7 +122,7 @@ class Rounds:
         return self._judge_draws(cell, history._replace(method=history.draws, expected=expected), collector, accuracy)
 
     def _judge_draws(self, cell: int, history: CellHistory, collector: Collector, accuracy: Accuracy) -> CellHistory:
-        draws = history.method
+        draws, asked = history.method, accuracy.share
         moments = collector.watched(draws.key, draws.realizations)
         if moments is None:  # some failed
             return history
@@ -125,15 +134,45 @@ class Rounds:
         drawn_error = relative_error(moments, over_range=over_range)
         known = draws._replace(error=error, drawn_error=drawn_error) if error < math.inf else draws
         accepted = history._replace(method=known)
-        if is_enough(draws.realizations, error, accuracy):
+        if is_enough(draws.realizations, error, asked):
             return accepted
-        count = next_count(draws.realizations, error, accuracy)
+        count = next_count(draws.realizations, error, asked, accuracy.max_realizations)
         exhausted = count == draws.realizations
         untried = history.expected is None and "expected" in self._plan.cells[cell].scene.estimators
-        if untried and (exhausted or self._is_dearer(cell, missing_count(draws.realizations, error, accuracy))):
+        if untried and (exhausted or self._is_dearer(cell, missing_count(draws.realizations, error, asked))):
             return history._replace(method=self._method(cell, "expected", 1), draws=draws)
         if not exhausted:
             return history._replace(method=draws._replace(realizations=count))
         if history.expected is not None and history.expected.error < error:
             return history._replace(method=history.expected)
         return accepted
+
+    def _judge_quantity(
+        self, cell: int, history: CellHistory, collector: Collector, choice: Choice, most: int
+    ) -> CellHistory:
+        """Accept the cell with the whole error of the quantity that is asked for, or extend it."""
+        key, estimator, count, *_ = method = history.method
+        told, moments = collector.diagnostics(key), collector.watched(key, count)
+        if moments is None:  # some failed
+            return history
+        planned = self._plan.cells[cell]
+        law = {**collector.means(key, count), self._plan.control: planned.values}
+        if math.isnan(method.model_error):
+            method = method._replace(model_error=choice.model_error(told, law))
+        if estimator == "expected" or not planned.scene.asperities.is_random:
+            numerical = choice.numerical(told, law) if estimator == "expected" else 0.0
+            return history._replace(method=method._replace(error=method.model_error + numerical))
+        if cell not in self._rare:
+            self._rare[cell] = RareAsperities(planned)
+        of_it = choice.variable == planned.controlled.watched  # what rare ones would add to others is not known
+        error = error_at(
+            moments, choice.step, self._rare[cell].spread(count) if of_it else 0.0, absolute=choice.of.absolute
+        )
+        whole, asked = method.model_error + choice.drawn(error, count), choice.standard_error(method.model_error)
+        method = method._replace(error=whole if whole < math.inf else math.nan)
+        if math.isnan(method.model_error) or is_enough(count, error, asked):
+            return history._replace(method=method)
+        more, untried = next_count(count, error, asked, most), "expected" in planned.scene.estimators
+        if untried and (more == count or self._is_dearer(cell, missing_count(count, error, asked))):
+            return history._replace(method=self._method(cell, "expected", 1), draws=method)
+        return history._replace(method=method._replace(realizations=more))

@@ -23,11 +23,11 @@ def plan(ctx: click.Context, scene: Path, changes: tuple[str, ...], workers: int
     from roughmdr.scene import read
 
     validated = read(scene, changes)
+    from roughmdr.batch.choose import plan_scene
     from roughmdr.batch.estimate import estimate
     from roughmdr.batch.foresee import foresee_cells
-    from roughmdr.batch.plan import make_plan
 
-    planned = make_plan(validated)
+    planned = plan_scene(validated)
     cost, prospect = estimate(planned, workers), foresee_cells(planned)
     if as_json:
         print_document(ctx, plan=plan_table(planned, cost, prospect, workers))

@@ -60,11 +60,11 @@ def run(
         from roughmdr.scene import read
 
         validated = read(scene, changes)  # before anything heavy is imported
-        from roughmdr.batch.plan import make_plan
+        from roughmdr.batch.choose import plan_scene
         from roughmdr.result.view import ResultView
         from roughmdr.runner.run import execute
 
-        planned = make_plan(validated)
+        planned = plan_scene(validated)
     silent = quiet or as_json
     done = execute(planned, output, _backend(**others), resume=resume, quiet=silent, command=command_line())
     result = ResultView(done)

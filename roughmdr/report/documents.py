@@ -149,7 +149,8 @@ class PlanTable(TypedDict):
     time: dict[str, float]  # "total", "longest" (with the finest grids of a reference), "start_up" [s]
     memory: dict[str, float]  # "total", "resident", "finest" (grids of a reference), "available" [bytes]
     file_size: float  # bytes
-    accuracy: dict[str, float | str] | None  # "relative", "max_realizations", "method"
+    accuracy: dict[str, Any] | None  # "relative" or "of", "max_realizations", "method"
+    choice: list[str]  # how a quantity is computed that is asked for, and what other methods would give
     cells: list[ForeseenTable]  # those that were tried
     path: list[str]
     lattice: list[str]  # that the asperities fill, with its pitch and patch

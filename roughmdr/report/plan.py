@@ -7,13 +7,13 @@ import numpy as np
 from roughmdr.batch.estimate import Estimate
 from roughmdr.batch.foresee import Foreseen, Prospect
 from roughmdr.batch.plan import Plan
+from roughmdr.model_error.at_given import largest_at_force
 from roughmdr.report.advice import advice_on
 from roughmdr.report.contacts import describe_sample
 from roughmdr.report.documents import ForeseenTable, PlanTable, trust_table
 from roughmdr.report.prospect import implausible_lines, largest_tension, pressure_at_closest, prospect_lines
 from roughmdr.report.result_document import coordinate_tables, swept_table
 from roughmdr.report.summary import counted, motion_lines
-from roughmdr.result.model_errors import largest_at_force
 from roughmdr.schema.units import format_quantity
 from roughmdr.schema.wording import format_bytes, format_seconds, format_table, printable, under
 from roughmdr.variables import LATERAL, SAMPLE, YIELDING
@@ -57,9 +57,14 @@ def _memory(estimate: Estimate) -> str:
 def _required_accuracy(plan: Plan) -> Iterator[tuple[str, str]]:
     """Yield what [accuracy] requires."""
     accuracy = plan.scene.accuracy
-    if accuracy is not None:
+    if accuracy is None:
+        return
+    if plan.choice is None:
         text = f"standard error at most {accuracy.relative:g} of the largest mean force, method {accuracy.method!r};"
         yield "accuracy", text
+    else:
+        yield from under("accuracy", plan.choice.lines)
+    if plan.scene.asperities.is_random:
         yield "", f"realisations are added to each cell until it is met, up to {accuracy.max_realizations};"
         yield "", "time, memory and tasks are those of the runs above"
 
@@ -116,7 +121,8 @@ def plan_table(plan: Plan, estimate: Estimate, prospect: Prospect, workers: int)
             "available": estimate.available_memory,
         },
         "file_size": estimate.file,
-        "accuracy": None if accuracy is None else accuracy.model_dump(),
+        "accuracy": None if accuracy is None else accuracy.model_dump(exclude_none=True),
+        "choice": [] if plan.choice is None else list(plan.choice.lines),
         "cells": [_foreseen(plan, cell) for cell in prospect.foreseen],
         "path": list(plan.path_notes),
         "lattice": plan.lattice_lines,
@@ -144,7 +150,9 @@ def _foreseen(plan: Plan, cell: Foreseen) -> ForeseenTable:
         "adhesion": cell.law.model,
         "model_error": error.named["model_error"],
         "parts": dict(error.parts),
-        "at_given_pressure": largest_at_force({**error.named, "grid_points": cell.law.grid_points}),
+        "at_given_pressure": largest_at_force(
+            {**error.named, "grid_points": cell.law.grid_points, "tabor_number": cell.law.tabor}
+        ),
         "largest_contact_fraction": error.largest_fraction,
         "effective_contacts": cell.law.effective_contacts,
         "sampling_error": cell.law.sampling_error,

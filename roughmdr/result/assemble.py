@@ -13,12 +13,13 @@ from roughmdr.batch.plan import Plan
 from roughmdr.batch.resume.keys import versions
 from roughmdr.batch.rounds import CellMethod
 from roughmdr.model_error import fraction_warnings
+from roughmdr.model_error.at_given import FORCES
 from roughmdr.model_error.coupling import coupling_warnings
 from roughmdr.numerics.arguments import Floats
-from roughmdr.result.model_errors import FORCES, errors_along
+from roughmdr.result.accuracy import reached
+from roughmdr.result.model_errors import errors_along
 from roughmdr.result.pull_off import pull_off_numbers
 from roughmdr.result.view import ResultView
-from roughmdr.scene.sections import Accuracy
 from roughmdr.storage.labelled import Array, Labelled
 from roughmdr.storage.result_file import provenance
 from roughmdr.variables import (
@@ -39,7 +40,6 @@ _REFERENCES = (
     "M. Hess, On the reduction method of dimensionality: the exact mapping of axisymmetric contact problems "
     "with and without adhesion (2012)"
 )
-_MOSTLY_DRAWN = 0.9  # share of the error by draws alone, above which there is no warning of rare asperities
 
 
 def assemble(
@@ -88,15 +88,15 @@ def assemble(
         attrs |= stage.attributes()
     notes = {"path": plan.path_notes, "lattice": plan.lattice_lines, "map": plan.map_lines}
     attrs |= {name: "\n".join(lines) for name, lines in {**notes, **plan.stage_notes}.items() if lines}
-    if scene.accuracy is not None:
-        data["accuracy_reached"] = of_cells("accuracy_reached", [each.error for each in methods])
-        data["accuracy_method"] = of_cells("accuracy_method", [ESTIMATORS.index(each.estimator) for each in methods])
-        attrs["accuracy"] = _describe_accuracy(scene.accuracy, methods)
-        failed = (diagnostics["status"].reshape(len(methods), -1) == FAILED).any(axis=1)
-        warnings += _accuracy_warnings(scene.accuracy, methods, failed)
-    if warnings:
-        attrs["warnings"] = "\n".join(warnings)
     result = Labelled(data, coordinates, {**provenance(scene.title, command), **attrs})
+    if scene.accuracy is not None:
+        failed = (diagnostics["status"].reshape(len(methods), -1) == FAILED).any(axis=1)
+        errors, result.attrs["accuracy"], more = reached(plan, methods, ResultView(result), failed)
+        data["accuracy_reached"] = of_cells("accuracy_reached", errors)
+        data["accuracy_method"] = of_cells("accuracy_method", [ESTIMATORS.index(each.estimator) for each in methods])
+        warnings += more
+    if warnings:
+        result.attrs["warnings"] = "\n".join(warnings)
     if plan.control in FORCES:
         data |= errors_along(ResultView(result))
     return result._replace(attrs={**result.attrs, "checksum": result.checksum()})
@@ -157,46 +157,4 @@ def _warnings(plan: Plan, diagnostics: dict[str, NDArray[Any]]) -> list[str]:
     for runs, grid in ((coupled & ~on_grid, False), (on_grid, True)):
         largest = (float(np.fmax.reduce(each[runs], initial=0.0)) for each in numbers)
         warnings += coupling_warnings(*largest, on_grid=grid)
-    return warnings
-
-
-def _describe_accuracy(accuracy: Accuracy, methods: Sequence[CellMethod]) -> str:
-    """Describe the error asked for, the realisations it took, and the cells with the expected law."""
-    known = [each for each in methods if not math.isnan(each.error)]
-    counts = [each.realizations for each in known if each.estimator != "expected"]
-    parts = [f"asked {accuracy.relative:g} of the largest mean force"]
-    if known:
-        parts.append(f"reached {max(each.error for each in known):.2g} in {len(known)} of {len(methods)} cells")
-    if counts:
-        fewest, most = min(counts), max(counts)
-        parts.append(f"{most if fewest == most else f'{fewest} to {most}'} realisations in {len(counts)} of them")
-    if len(counts) < len(known):
-        parts.append(f"the expected law, which has no noise, in {len(known) - len(counts)} of them")
-    return "; ".join(parts)
-
-
-def _accuracy_warnings(accuracy: Accuracy, methods: Sequence[CellMethod], failed: NDArray[np.bool_]) -> list[str]:
-    """Return warnings of cells that did not reach the error asked for; those that failed have their own."""
-    warnings, cells = [], len(methods)
-    if missed := [each for each in methods if each.error > accuracy.relative]:
-        if accuracy.method == "expected":
-            other = "with accuracy.method 'auto' or 'sampled' asperities are drawn instead"
-            reason = f"the expected law is not accurate enough; {other}"
-        else:
-            reason = f"accuracy.max_realizations, {accuracy.max_realizations}, is too low"
-        warnings.append(
-            f"the error asked for, {accuracy.relative:g}, was not reached in {len(missed)} of {cells} cells "
-            f"(up to {max(each.error for each in missed):.2g}): {reason}"
-        )
-    if rare := [each.drawn_error for each in missed if each.drawn_error < _MOSTLY_DRAWN * each.error]:
-        warnings.append(
-            f"in {len(rare)} of {cells} cells asperities too rare to be met by so many draws may bear much of "
-            f"the force: without them the error would seem to be {max(rare):.2g}"
-        )
-    unknown = [each for each, fails in zip(methods, failed, strict=True) if math.isnan(each.error) and not fails]
-    if unknown:
-        warnings.append(
-            f"in {len(unknown)} of {cells} cells none of {unknown[0].realizations} realisations had any force: "
-            "the error of the mean is not known"
-        )
     return warnings

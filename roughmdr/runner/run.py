@@ -9,10 +9,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from roughmdr.batch.choose import plan_scene
 from roughmdr.batch.collect import Collector
 from roughmdr.batch.costs import ensemble_bytes, result_bytes
 from roughmdr.batch.foresee import check_foreseen
-from roughmdr.batch.plan import Plan, make_plan
+from roughmdr.batch.plan import Plan
 from roughmdr.batch.resume.find import check_no_less, find_previous, is_finished, reuse
 from roughmdr.batch.resume.reusable import ReusableRows
 from roughmdr.batch.resume.writer import CheckpointWriter
@@ -104,7 +105,7 @@ def run(
     A scene file with another work of adhesion: ``rm.run("scene.toml", set={"adhesion.work": "10 mJ/m^2"})``.
     """
     target = None if out is None else Path(out)
-    plan = make_plan(read(scene, set or {}))
+    plan = plan_scene(read(scene, set or {}))
     result = execute(plan, target, Backend(scheduler, workers), resume=resume, quiet=quiet)
     warn_limits(result.attrs.get("warnings", "").splitlines())
     status = result.variables["status"].values

@@ -75,6 +75,7 @@ class _Sections(Section):
         """Estimators to choose from: one, or with accuracy.method "auto" one that draws and, if possible, "expected".
 
         Stratified draws need fewer realisations, but their number of asperities is rounded, which must be negligible.
+        At given load they are not used: their mean, and the expected law, is not that of patches drawn at random.
         """
         if self.accuracy is None:
             return (self.batch.estimator,)
@@ -82,12 +83,12 @@ class _Sections(Section):
             return (self.accuracy.method,)
         if not self.flat:
             return ("expected",)
+        if self.path.control != "separation":
+            return ("sampled",)
         count = self.asperities.expected_count
-        is_whole = abs(count - round(count)) <= _NEGLIGIBLE * self.accuracy.relative * count
+        is_whole = abs(count - round(count)) <= _NEGLIGIBLE * self.accuracy.share * count
         drawn = "stratified" if is_whole else "sampled"
-        # Under a machine the expected law is that of a surface without end, not the mean of such patches.
-        alone = self.path.control != "separation" or bool(self.reason_against("expected"))
-        return (drawn,) if alone else (drawn, "expected")
+        return (drawn,) if self.reason_against("expected") else (drawn, "expected")
 
     @property
     def effective_modulus(self) -> float:

@@ -30,12 +30,15 @@ from roughmdr.schema.units import DIMENSIONLESS
 
 _DRAFT = "https://json-schema.org/draft/2020-12/schema"
 Definitions = dict[str, JsonSchema]
+_ASKS = {"required": ["accuracy"], "properties": {"accuracy": {"required": ["of"]}}}
+"""Schema of scenes that ask for a quantity."""
 
 
 def scene_schema() -> JsonSchema:
     """Return the schema of a scene."""
     scene = _section(Scene, "")
-    scene["required"].remove("title")  # which is that of the file
+    for name in ("title", "path"):  # which is that of the file, or leads to where a quantity is asked for
+        scene["required"].remove(name)
     swept: dict[str, list[JsonSchema]] = {}
     for key, reader in key_readers([Scene], {}):
         if may_be_swept(key) and (entry := _swept(key, reader)) not in swept.setdefault(key, []):
@@ -43,7 +46,8 @@ def scene_schema() -> JsonSchema:
     sweep, definitions = sweep_schema(swept, sorted({name for names in own_parameters() for name in names}))
     scene["properties"]["sweep"] |= sweep
     # A key that is swept may be left out otherwise.
-    unless_swept = {"if": {"not": {"required": ["sweep"]}}, "then": only_required(scene)}
+    required = {**only_required(scene), "if": _ASKS, "else": {"required": ["path"]}}
+    unless_swept = {"if": {"not": {"required": ["sweep"]}}, "then": required}
     definitions |= distribution_schemas()
     return {"$schema": _DRAFT, **without_required(scene), **unless_swept, "$defs": definitions}
 

@@ -61,7 +61,8 @@ def read(
     if faults or scene is None:
         faults = sorted(faults, key=lambda fault: line_of(fault.key, lines) or 0)
         raise SceneError.of([_add_location(fault, label, lines, applied) for fault in faults])
-    scene._locate = partial(_add_location, label=label, lines=lines, applied=applied)
+    known = source._locate if isinstance(source, Scene) and not applied else None
+    scene._locate = known or partial(_add_location, label=label, lines=lines, applied=applied)
     return scene
 
 

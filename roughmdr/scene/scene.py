@@ -10,6 +10,7 @@ from pydantic import PrivateAttr, model_validator
 from roughmdr.ensemble import Source
 from roughmdr.errors import Fault, OutOfRange, SceneError
 from roughmdr.interaction.settings import reason_against_adhesion
+from roughmdr.scene.asked import Asked, path_to
 from roughmdr.scene.content import Sections
 from roughmdr.scene.lateral import displacements
 from roughmdr.scene.path import FlatPath
@@ -21,7 +22,7 @@ from roughmdr.schema.listing import html_listing, listing
 from roughmdr.schema.units import format_quantity, millipascals
 from roughmdr.schema.wording import printable, short_repr
 from roughmdr.stages import STAGES
-from roughmdr.variables import CONTROLS, CURVE_VARIABLES, PRELOADS
+from roughmdr.variables import CONTROLS, CURVE_VARIABLES, DEFAULT_VARIABLES, OUTPUT_VARIABLES, PRELOADS
 
 _SOFTEST = 1.0
 """Effective modulus [Pa] below which no solid is known: the softest gels have some 10 Pa."""
@@ -93,6 +94,21 @@ class Scene(Sections):
         usual = next(filter(None, (stage.usual_variables(table) for stage in reversed(STAGES))), None)
         return table if usual is None else {**table, "output": {**output, "variables": usual}}
 
+    @model_validator(mode="before")
+    @classmethod
+    def _for_what_is_asked(cls, table: Any) -> Any:
+        """Add a path to the place where a quantity is asked for, and the variables that it takes."""
+        accuracy = table.get("accuracy")
+        of = accuracy.get("of") if isinstance(accuracy, dict) else None
+        if not isinstance(of, dict):
+            return table
+        output = table.get("output", {})
+        names = output.get("variables", [*DEFAULT_VARIABLES]) if isinstance(output, dict) else None
+        if isinstance(names, list):
+            asked = [name for name in (*of, "force", "stiffness") if name in OUTPUT_VARIABLES]
+            table = {**table, "output": {**output, "variables": [*names, *asked]}}
+        return table if "path" in table else {**table, "path": path_to(of)}
+
     @model_validator(mode="after")
     def _sections_agree(self) -> "Scene":
         if self.counter is not None and self.material.effective_modulus is not None:
@@ -140,7 +156,9 @@ class Scene(Sections):
                 section.check(self)
 
     def _check_accuracy(self, accuracy: Accuracy) -> None:
-        if not self.asperities.is_random:
+        if accuracy.of is not None:
+            self._check_asked(accuracy.of)
+        elif not self.asperities.is_random:
             raise mismatch("accuracy", f"does not go with source {self.asperities.source!r}: nothing in it is random")
         if "estimator" in self.batch.model_fields_set:
             raise mismatch("batch.estimator", "is chosen by accuracy.method if there is an [accuracy]")
@@ -149,6 +167,16 @@ class Scene(Sections):
             raise mismatch("batch.realizations", message)
         if accuracy.method != "auto" and (reason := self.reason_against(accuracy.method)):
             raise mismatch("accuracy.method", f"cannot be {accuracy.method!r}: {reason}")
+
+    def _check_asked(self, of: Asked) -> None:
+        path = self.path
+        if self.unlike:
+            raise mismatch("accuracy.of", f"asks for the elastic law under a flat, not {self.unlike}")
+        leads = path.control == of.given and path.lateral is None
+        sigma = self.asperities.sigma if path.uses_sigma or of.in_sigma else 0.0
+        given = [value for value in path.given(sigma) if value is not None]
+        if reason := of.reason_against(given, sigma) if leads and given else f"must control the {of.given}":
+            raise mismatch("path", f"{reason}, where accuracy.of asks for its quantity; or leave it out")
 
     @property
     def doubts(self) -> tuple[str, ...]:

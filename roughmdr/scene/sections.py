@@ -7,6 +7,8 @@ from pydantic import BeforeValidator, Field, WithJsonSchema, field_validator, mo
 
 from roughmdr.errors import RoughmdrError
 from roughmdr.kernels.adhesion import ERROR, RANGE, STRENGTH, WORK, Adhesion, AskedModel, check_combination
+from roughmdr.scene.asked import Asked
+from roughmdr.schema.faults import mismatch
 from roughmdr.schema.material import MODULUS, POISSON, check_one_body
 from roughmdr.schema.quantities import Quantity, WholeNumber
 from roughmdr.schema.section import Section
@@ -20,6 +22,8 @@ from roughmdr.variables import (
 )
 
 _MAX_REALIZATIONS = 1_000_000_000
+_SHARE = 1e-2
+"""Relative error of the force that goes with a separation that is asked for, about."""
 _Modulus = Annotated[float, MODULUS]
 _Poisson = Annotated[float, POISSON]
 _Hardness = Annotated[float, Quantity("Pa", above=0.0)]
@@ -129,18 +133,35 @@ class Batch(Section):
 
 
 class Accuracy(Section):
-    """[accuracy]: realisations are added until the mean force is known well enough.
+    """[accuracy]: realisations are added until the mean force, or the quantity ``of`` interest, is known well enough.
 
-    That is when its standard error, divided by the largest mean force, is at most ``relative``.
+    That is when its standard error, divided by the largest mean force, is at most ``relative``, or when the whole error
+    of the quantity is as small as asked: the method is chosen for it too.
 
     ``method`` "auto" uses the cheaper of stratified draws and the expected law, if the latter is accurate enough.
     """
 
     examples: ClassVar[Mapping[str, str]] = {"relative": "1e-2"}
 
-    relative: Annotated[float, Quantity("1", above=0.0, at_most=1.0)]
+    relative: Annotated[float, Quantity("1", above=0.0, at_most=1.0)] | None = None
     """Standard error of the mean force over its largest value."""
+    of: Asked | None = None
+    """A quantity with its whole error, in place of ``relative``: how asperities feel each other is chosen for it."""
     max_realizations: Annotated[int, WholeNumber(2, _MAX_REALIZATIONS)] = 10_000
     """Most realisations of a cell."""
     method: Literal["auto", "sampled", "stratified", "expected"] = "auto"
     """"auto": the cheaper of draws and the expected law; or an estimator."""
+
+    @model_validator(mode="after")
+    def _relative_or_of(self) -> "Accuracy":
+        if self.relative is None and self.of is None:
+            raise mismatch("accuracy.relative", "is missing")
+        if self.relative is not None and self.of is not None:
+            raise mismatch("accuracy.of", "does not go with accuracy.relative: one error is asked for")
+        return self
+
+    @property
+    def share(self) -> float:
+        """Relative error that is asked for; of a separation, which has no natural zero, ``_SHARE``."""
+        of_quantity = _SHARE if self.of is None or self.of.absolute else self.of.tolerance
+        return of_quantity if self.relative is None else self.relative

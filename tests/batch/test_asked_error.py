@@ -28,7 +28,6 @@ from roughmdr.runner import local
 from roughmdr.runner.backend import Backend
 from roughmdr.runner.run import execute
 from roughmdr.scene import read
-from roughmdr.scene.sections import Accuracy
 
 FEW: dict[str, Any] = {**ASPERITIES, "count": 60}
 LEVEL: dict[str, Any] = {**FEW, "height": "0 um"}
@@ -459,11 +458,10 @@ def test_the_bound_holds_in_99_of_100_normal_samples(count: int) -> None:
 
 @pytest.mark.parametrize("error", [0.011, 0.02, 1.0, 1e300])
 def test_the_next_look_is_after_some_more_but_not_many_times_as_many(error: float) -> None:
-    asked = Accuracy(relative=0.01, max_realizations=1000)
     for count in (16, 100, 999):
-        more = next_count(count, error, asked)
+        more = next_count(count, error, 0.01, 1000)
         assert count < more <= min(4 * count, 1000)
-    assert next_count(100, 0.001, asked) == 100
+    assert next_count(100, 0.001, 0.01, 1000) == 100
 
 
 def test_the_keys_of_all_methods_are_known_from_the_start() -> None:

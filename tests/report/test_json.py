@@ -178,8 +178,8 @@ def test_the_end_of_the_memory(monkeypatch: pytest.MonkeyPatch) -> None:
     def none_left(*_: object) -> None:
         raise MemoryError("of the test")
 
-    monkeypatch.setattr(runner, "make_plan", none_left)
-    monkeypatch.setattr("roughmdr.batch.plan.make_plan", none_left)
+    monkeypatch.setattr(runner, "plan_scene", none_left)
+    monkeypatch.setattr("roughmdr.batch.choose.plan_scene", none_left)
     document = told("plan", "few.toml")
     assert document["exit_status"] == 1
     assert document["faults"][0]["message"] == "out of memory: of the test"

@@ -22,12 +22,18 @@ from roughmdr.batch.plan import make_plan
 from roughmdr.cli import main
 from roughmdr.errors import SceneError
 from roughmdr.scene import read
+from roughmdr.scene.asked import Asked
 from roughmdr.scene.keys import key_readers, set_key
 from roughmdr.scene.scene import Scene
 from roughmdr.schema.faults import sections_of
 
 _DRAWN = {key: value for key, value in ASPERITIES.items() if key != "radius"}
 _WAVES = {"shape": "paraboloid", "hurst": 0.8, "long_wave": "50 um", "short_wave": "5 um"}
+_PLACES = {"at_pressure": "10 kPa", "at_force": "1 mN", "at_separation": "1 sigma"}
+ASKED = {
+    name: list(_PLACES.items())[(2 if name in ("force", "pressure") else number % 2)]
+    for number, name in enumerate(name for name in Asked.model_fields if name not in _PLACES)
+}
 BASES: dict[str, dict[str, Any]] = {
     "every section": {
         **SCENE,
@@ -60,6 +66,15 @@ BASES: dict[str, dict[str, Any]] = {
         "material": {"effective_modulus": "4 MPa", "hardness": "1 MPa"},
         "asperities": {**_DRAWN, "shape": "cone", "slope": 0.1},
         "accuracy": {"relative": 0.1, "max_realizations": 20, "method": "sampled"},
+    },
+    **{
+        f"a {name} asked for": {
+            **{key: value for key, value in SCENE.items() if key != "path"},
+            "accuracy": {"max_realizations": 20, "of": {name: "5 nm" if name == "separation" else "2 %", place: given}},
+            "conduction": CONDUCTION,
+            "batch": {},
+        }
+        for name, (place, given) in ASKED.items()
     },
     "populations": {
         **SCENE,
@@ -217,7 +232,7 @@ BASES: dict[str, dict[str, Any]] = {
     },
 }
 HELD = ("separation", "force", "pressure")  # whose single values need path.lateral, which no schema tells
-MAY_BE_NEGATIVE = ("poisson", "start", "stop", "mean", "height", *HELD)
+MAY_BE_NEGATIVE = ("poisson", "start", "stop", "mean", "height", "at_separation", *HELD)
 NONSENSE: dict[str, object] = {
     "unit": "3 parsec",
     "no number": "three",
