@@ -6,8 +6,6 @@ boundary elements.
 
 import math
 import warnings
-from concurrent.futures import ProcessPoolExecutor
-from multiprocessing import get_context
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -20,7 +18,7 @@ from roughmdr.ensemble.maps.summits import find_summits
 from roughmdr.numerics.arguments import Floats
 from studies.comparison import HELD, PAIRS, draw_stated, held, in_cases, law_of, panels
 from studies.hills.maps import SIDE, MapCase, hills_of
-from studies.study import Study, table
+from studies.study import Study, in_two_processes, table
 from studies.versus_adhesive_bem import by_elements
 from studies.versus_adhesive_bem.cases import FLATTER, PRESSED, STATED, flat_law
 from studies.versus_adhesive_bem.cases import Case as Adhering
@@ -47,7 +45,6 @@ _LEAST_POINTS = 3.0  # least points of the grid a mean contact radius
 _STEPS = 30  # steps of the law from one solution of boundary elements to the next
 _SHAPES = ("paraboloid", "paraboloid", "lognormal", "cone", "quartic")
 _PLACEMENTS = ("random", "random", "hard_core 0.5", "hard_core 0.7", "hexagonal", "square")
-_WORKERS = 2
 _WORDS = {
     "error": ("error of a quantity, of the separation over that of force over stiffness", "1"),
     "stated": ("error that is stated of it", "1"),
@@ -243,10 +240,8 @@ def _row(
 def measure(quick: bool) -> xr.Dataset:
     """Compare all surfaces, or a few of them on coarse grids."""
     tasks = [(SEED, number, _POINTS[quick]) for number in range(SURFACES[quick])]
-    with ProcessPoolExecutor(_WORKERS, mp_context=get_context("spawn")) as pool:
-        rows = [row for part in pool.map(compare, tasks) for row in part]
-        adhering = pool.map(compare_adhering, PRESSED[:1] if quick else PRESSED)
-        rows += [row for part in adhering for row in part]
+    adhering = in_two_processes(compare_adhering, PRESSED[:1] if quick else PRESSED)
+    rows = [row for part in (*in_two_processes(compare, tasks), *adhering) for row in part]
     labels = {name: ("case", [row[name] for row in rows]) for name in ("group", "model", "surface")}
     asked = [f"{quantity} at given {control}" for quantity, control in _ASKED]
     return xr.Dataset(in_cases(_WORDS, rows, "case", "asked", "step"), {**labels, "asked": asked})

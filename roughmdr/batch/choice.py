@@ -39,7 +39,7 @@ class Choice(NamedTuple):
         return float(stdtrit(realizations - 1.0, _BELOW)) * standard_error
 
     def numerical(self, told: Mapping[str, Any], law: Mapping[str, Floats]) -> float:
-        """Return the error of an expected law in the quantity, likewise."""
+        """Return the numerical error of an expected law in the quantity: relative [1], of a separation [m]."""
         force, stiffness = law["force"][self.step], law["stiffness"][self.step]
         of_force = float(told["numerical_error"]) * float(np.nanmax(np.abs(law["force"])))
         scale = float(stiffness) if self.of.absolute else abs(float(force))
@@ -67,6 +67,7 @@ def length(force: float, stiffness: float) -> float:
 
 
 def _of_asperities(told: Mapping[str, Any], law: Mapping[str, Floats], step: int, of: Asked) -> float:
+    """Return the error of the model in the law of asperities, at a step: relative [1], of a separation [m]."""
     unknown, names = np.full(1, np.nan), [name for name in WITH_MODEL_ERROR if name in law]
     here = [law[name][step : step + 1] for name in names]
     changes = [np.diff(law[name][step - 1 : step + 1]) if step else unknown for name in names]

@@ -24,7 +24,6 @@ from roughmdr.scene import Scene, read
 from roughmdr.scene.asked import Asked
 from roughmdr.stages.reference import OF_AREA, Reference
 
-_MAX_CELLS = 12  # most cells of a sweep that a method is foreseen of
 _NEGLIGIBLE = 1.0  # seconds of all realisations of a method, below which no other one is looked at
 _DOUBT = 1.2  # factor on the error of the model that a part of the asperities foretells: other draws have more
 _GRID_SHARE = 0.5  # error of the grid over the error that is asked for
@@ -147,7 +146,7 @@ def _add(table: dict[str, Any], sections: dict[str, dict[str, Any]]) -> None:
 def _forecast(name: str, scene: Scene, of: Asked) -> _Forecast:
     """Return what a method would take and give; RoughmdrError where it cannot be foreseen."""
     plan = make_plan(scene)
-    cells = [plan.cells[number] for number in some_cells(plan, _MAX_CELLS)]
+    cells = [plan.cells[number] for number in some_cells(plan)]
     choice = Choice(of, _answer(scene, of), of.step(cells[0].controlled.values), ())
     error, scatter = np.array([_foreseen(cell, choice) for cell in cells]).max(axis=0).tolist()
     costs = [min(seconds(cell, estimator) for estimator in cell.scene.estimators) for cell in cells]
@@ -184,7 +183,7 @@ def _answer(scene: Scene, of: Asked) -> str:
 
 
 def _name(name: str, scene: Scene) -> str:
-    """Return the name of a method, where the scene itself tells how asperities feel each other."""
+    """Return the name of a method, which the scene itself may tell."""
     if scene.stage(Reference) is not None:
         return _GRID
     if scene.interaction is None or name != _ALONE:

@@ -56,7 +56,7 @@ class Prospect(NamedTuple):
 def foresee_cells(plan: Plan) -> Prospect:
     """Foresee some cells of a plan, evenly chosen, the first and the last among them."""
     foreseen, failures = [], []
-    for number in some_cells(plan, _MAX_CELLS):
+    for number in some_cells(plan):
         cell = plan.cells[number]
         separation, most = cell.path.separation, _MAX_PAIRED_STEPS if cell.scene.needs_positions else _MAX_STEPS
         steps = int(min([most, *(stage.most_foreseen for stage in cell.scene.stages)]))
@@ -80,7 +80,7 @@ def foresee_cells(plan: Plan) -> Prospect:
     return Prospect(tuple(foreseen), tuple(failures), coupled, plan.scene.interaction)
 
 
-def some_cells(plan: Plan, most: int) -> list[int]:
+def some_cells(plan: Plan, most: int = _MAX_CELLS) -> list[int]:
     """Return the numbers of ``most`` cells at most, evenly chosen, the first and the last among them."""
     numbers: list[int] = np.unique(np.linspace(0, len(plan.cells) - 1, most).astype(int)).tolist()
     return numbers

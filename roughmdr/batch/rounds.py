@@ -25,7 +25,7 @@ class CellMethod(NamedTuple):
     """Error of the mean force over its largest value, of draws the standard error, or the whole one of a quantity that
     is asked for; NaN where not known."""
     drawn_error: float = math.nan  # standard error of the draws alone, without asperities that they may not have met
-    model_error: float = math.nan  # of a quantity that is asked for, as the first realisations tell it
+    model_error: float = math.nan  # error by the model in a quantity that is asked for, from the first realisations
 
 
 class CellHistory(NamedTuple):
@@ -94,10 +94,10 @@ class Rounds:
 
     def _first_count(self, accuracy: Accuracy) -> int:
         """Return how many realisations to begin with."""
-        scene, fewest = self._plan.scene, FIRST if self._plan.choice is None else FEWEST
-        return (
-            min(max(scene.batch.realizations, fewest), accuracy.max_realizations) if scene.asperities.is_random else 1
-        )
+        if not self._plan.scene.asperities.is_random:
+            return 1
+        fewest = FIRST if self._plan.choice is None else FEWEST
+        return min(max(self._plan.scene.batch.realizations, fewest), accuracy.max_realizations)
 
     def _is_dearer(self, cell: int, realizations: float) -> bool:
         """Return whether so many realisations cost more than the expected law."""
