@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from roughmdr.fitting.jumps import nearest_in, places_of, projected
+from roughmdr.fitting.jumps import jumps_at, nearest_in, places_of, projected
 from roughmdr.fitting.model import Model
 from roughmdr.fitting.search import Found
 from roughmdr.numerics.arguments import Floats
@@ -30,7 +30,7 @@ class Edges(NamedTuple):
 def certain_edges(model: Model, found: Found) -> Edges:
     """Return the edges of the interval between jumps beyond which the law misses a load by much more than the noise."""
     here, edges = model.point(found.x), list[tuple[Floats, float]]()
-    jumps = model.jumps_at(found.x) if model.jumps else None
+    jumps = jumps_at(model, found.x) if model.jumps else None
     left = np.linalg.svd(found.slopes, full_matrices=False)[0]
     least = float(np.sum(np.square(found.deviations)))
     noise = least / found.deviations.size if model.curve.error is None else 1.0

@@ -7,10 +7,13 @@ neighbouring intervals are tried.
 """
 
 from collections.abc import Iterator
+from typing import NamedTuple
 
 import numpy as np
 
-from roughmdr.fitting.model import Jumps, Model, Point
+from roughmdr.errors import RoughmdrError
+from roughmdr.fitting.model import Model, Point, changes_of
+from roughmdr.fitting.slopes import slopes_of
 from roughmdr.numerics.arguments import Floats
 
 Interval = tuple[int, ...]
@@ -22,13 +25,61 @@ _NEWTON, _ITERATIONS, _HALVINGS = 4, 20, 8
 _LONGEST = 1.0  # longest change of x in an iteration
 _LESS = 1e-11  # relative decrease of the sum of squares below which iterations end
 _LEAST_GAIN = 1e-7  # relative decrease of the sum of squares by which another interval is better
+_LITTLE = 1e-5  # change of x in differences of the positions of jumps
+_FINER, _REFINEMENTS = 64, 4  # steps that replace one, and how often, to locate a jump
 _FARTHEST = 2  # steps to the neighbours of an interval
+
+
+class Jumps(NamedTuple):
+    """Where the contact is made and lost along the path, in order."""
+
+    control: Floats
+    """[m]"""
+    slopes: Floats
+    """Derivatives [jump, parameter] of the control."""
+
+
+def jumps_at(model: Model, x: Floats) -> Jumps | None:
+    """Return where the contact is made and lost; None where the law, there or nearby, has no or other jumps."""
+    around = model.point(x).jumps
+    if not around:
+        return None
+    changes = np.where(x + _LITTLE > model.bounds[1], -_LITTLE, _LITTLE)
+    found = [_control_of_jumps(model, each, around) for each in [x, *(x + np.diag(changes))]]
+    if len({each.size for each in found}) > 1 or not found[0].size:
+        return None
+    return Jumps(found[0], np.stack([each - found[0] for each in found[1:]], axis=1) / changes)
+
+
+def _control_of_jumps(model: Model, x: Floats, around: Interval) -> Floats:
+    """Return the control [m] at each jump of the contact, in order, by its place ``around`` which they are; empty where
+    the law has none.
+
+    The law is followed along the turns of the path alone, and in finer and finer steps about each jump.
+    """
+    values, steps = model.curve.values, np.array(around, dtype=int)
+    ways = np.sign(np.diff(values))
+    turns = np.flatnonzero(ways[1:] != ways[:-1]) + 1
+    path = values[np.unique([0, *turns, *steps, *(steps + 1), values.size - 1])]
+    first = last = np.empty(0)
+    for _ in range(_REFINEMENTS + 1):
+        try:
+            at = changes_of(model.load(x, path).touching)
+        except RoughmdrError:
+            return np.empty(0)
+        if at.size != steps.size:
+            return np.empty(0)
+        first, last = path[at], path[at + 1]
+        apart = np.append(True, (np.diff(first) != 0.0) | (np.diff(at) > 0))  # jumps in different intervals
+        between = np.linspace(first[apart], last[apart], _FINER + 1)
+        path = np.insert(path, np.repeat(at[apart] + 1, _FINER + 1), between.T.ravel())
+    return np.asarray(0.5 * (first + last))
 
 
 def with_measured_jumps(model: Model, x: Floats) -> Floats:
     """Return the x nearest to one whose law jumps where the measured load changes most, or x where there is none."""
     point = model.point(x)
-    moved = nearest_in(model, point, _measured(model, point.jumps), model.jumps_at(x))
+    moved = nearest_in(model, point, _measured(model, point.jumps), jumps_at(model, x))
     return x if moved is None else moved.x
 
 
@@ -41,8 +92,8 @@ def least_squares_between(model: Model, x: Floats) -> Floats:
     best = min((_least(model, model.point(each)) for each in starts), key=_cost)
     tried = {best.jumps, model.point(x).jumps}
     while True:
-        better, left = best, np.linalg.svd(model.slopes(best.x), full_matrices=False)[0]
-        places = model.jumps_at(best.x)
+        better, left = best, np.linalg.svd(slopes_of(model, best.x), full_matrices=False)[0]
+        places = jumps_at(model, best.x)
         for interval in _neighbours(best.jumps):
             point = None if interval in tried else nearest_in(model, best, interval, places)
             if point is not None and _cost(point) - np.sum(np.square(left.T @ point.deviations)) < _cost(better):
@@ -93,7 +144,7 @@ def nearest_in(model: Model, point: Point, interval: Interval, jumps: Jumps | No
         point = model.point(np.clip(point.x + step, low, high))
         if point.jumps == interval:
             return point
-        jumps = model.jumps_at(point.x)
+        jumps = jumps_at(model, point.x)
     return None
 
 
@@ -117,12 +168,12 @@ def _least(model: Model, point: Point) -> Point:
 
 def _improved(model: Model, point: Point) -> Point | None:
     """Return a better point of the same interval, by linearisation; None where there is none."""
-    left, sizes, right = np.linalg.svd(model.slopes(point.x), full_matrices=False)
+    left, sizes, right = np.linalg.svd(slopes_of(model, point.x), full_matrices=False)
     axes, goal = right.T / np.maximum(sizes, _FLAT * sizes[0]), -left.T @ point.deviations
     low, high = model.bounds
     sides, ends = [np.eye(point.x.size), -np.eye(point.x.size)], [high - point.x, point.x - low]
     for edged in (False, True):
-        jumps = model.jumps_at(point.x) if edged else None
+        jumps = jumps_at(model, point.x) if edged else None
         if jumps is not None:
             places, slopes = places_of(model, point.jumps, jumps)
             sides, ends = [*sides, slopes, -slopes], [*ends, 1.0 - _INSIDE - places, places - _INSIDE]
@@ -134,7 +185,7 @@ def _improved(model: Model, point: Point) -> Point | None:
         for _ in range(_HALVINGS if edged else 1):
             trial = model.point(point.x + ahead)
             if edged and trial.jumps != point.jumps:
-                trial = nearest_in(model, trial, point.jumps, model.jumps_at(trial.x)) or point
+                trial = nearest_in(model, trial, point.jumps, jumps_at(model, trial.x)) or point
             if trial.jumps == point.jumps and _cost(trial) < _cost(point):
                 return trial
             ahead = 0.5 * ahead

@@ -104,7 +104,7 @@ def _parameter(
             raise RoughmdrError(f"is {start:g}; it must start above 0")
         most = _WIDEST if high is None else math.log(high / start)
         return Parameter(key, reader.dimension, start, 0.0, (-_WIDEST, min(most, _WIDEST)))
-    scale = _length(scene, curve) if reader.dimension == "m" else abs(start) or 1.0
+    scale = length_scale(scene, curve) if reader.dimension == "m" else abs(start) or 1.0
     ends = [None if end is None else (end - start) / scale for end in (low, high)]
     bounds = max(-_FARTHEST, -_FARTHEST if ends[0] is None else ends[0]), ends[1] if ends[1] is not None else _FARTHEST
     return Parameter(key, reader.dimension, start, scale, bounds, (-1.0, 1.0))
@@ -114,7 +114,7 @@ def _offset(scene: Scene, curve: MeasuredCurve) -> Parameter:
     """Return the zero of the control, sought where the highest asperities are touched along the path, or were before
     it within six standard deviations of their heights.
     """
-    scale, source = _length(scene, curve), scene.asperities
+    scale, source = length_scale(scene, curve), scene.asperities
     highest, closest = float(source.extremes(1e-3).height.max()), float(curve.values.min())
     way = max(float(np.ptp(curve.values)), 6.0 * source.sigma if source.sigma < math.inf else 0.0)
     nearby = (highest - closest - way) / scale, (highest - closest) / scale
@@ -122,7 +122,7 @@ def _offset(scene: Scene, curve: MeasuredCurve) -> Parameter:
     return Parameter(OFFSET, "m", 0.0, scale, bounds, nearby)
 
 
-def _length(scene: Scene, curve: MeasuredCurve) -> float:
+def length_scale(scene: Scene, curve: MeasuredCurve) -> float:
     """Return the length [m] over which the measured load changes: the range of the control times the mean load over the
     largest; the rise of an asperity where the control stays the same.
     """

@@ -1,5 +1,6 @@
 """The search for the parameters of least squares: from the start of the scene, and if need be from others."""
 
+from functools import partial
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -7,6 +8,7 @@ import numpy as np
 from roughmdr.fitting.jumps import least_squares_between, with_measured_jumps
 from roughmdr.fitting.model import Model
 from roughmdr.fitting.residuals import is_systematic, relative_rms
+from roughmdr.fitting.slopes import slopes_of
 from roughmdr.numerics.arguments import Floats
 
 if TYPE_CHECKING:
@@ -36,7 +38,7 @@ def search(model: Model) -> Found:
     if model.curve.control == "separation":
         found = _search(model)
     else:
-        with model.at_measured_separations():
+        with model.bearing(model.curve.load):
             near = _search(model)
         found = _follow(model, near.x)
     return _settled(model, found) if model.jumps and _cost(found) > 0.0 and found.slopes.any() else found
@@ -63,7 +65,7 @@ def _cost(found: Found) -> float:
 def _settled(model: Model, found: Found) -> Found:
     """Return the least squares of all intervals between jumps: see ``jumps``."""
     x = least_squares_between(model, found.x)
-    return Found(x, model.deviations(x), model.slopes(x), found.converged)
+    return Found(x, model.deviations(x), slopes_of(model, x), found.converged)
 
 
 def _is_poor(model: Model, found: Found) -> bool:
@@ -81,7 +83,7 @@ def _follow(model: Model, start: Floats) -> Found:
     result: OptimizeResult = least_squares(
         model.deviations,
         np.clip(start, low, high),
-        jac=model.slopes,
+        jac=partial(slopes_of, model),
         bounds=(low, high),
         ftol=_FTOL,
         xtol=_XTOL,

@@ -8,6 +8,7 @@ from roughmdr.errors import OutOfRange
 from roughmdr.fitting.edges import Edges, certain_edges, farthest
 from roughmdr.fitting.model import Model
 from roughmdr.fitting.search import Found
+from roughmdr.fitting.slopes import yielded
 from roughmdr.numerics.arguments import Floats
 
 _LEVEL = 0.95
@@ -164,4 +165,4 @@ def _shift(model: Model, found: Found, inverse: Floats) -> Floats | None:
     if not np.isfinite(curve).all():
         return None
     error = curve * law.variables[model.curve.quantity]  # at given separation
-    return np.abs(inverse @ (model.on_machine(found.x, law, error) / model.curve.weight))
+    return np.abs(inverse @ (yielded(model, found.x, error) / model.curve.weight))

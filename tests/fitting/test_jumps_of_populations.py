@@ -8,6 +8,7 @@ import pytest
 from tips import MODULUS, OFFSET, WORK, Tip
 
 import roughmdr as rm
+from roughmdr.fitting.jumps import jumps_at
 from roughmdr.fitting.measured import read_measured
 from roughmdr.fitting.model import Model, scene_to_fit
 
@@ -38,7 +39,7 @@ def test_the_jumps_of_both_lie_where_they_are_alone(points: int) -> None:
     model = Model(scene_to_fit(two(), {}, curve, FREE), curve, FREE)
     offset = model.parameters[2]
     x = np.array([0.0, 0.0, (ZERO - offset.start) / offset.scale])
-    found = model.jumps_at(x)
+    found = jumps_at(model, x)
     assert found is not None
     fold = 0.75 * (np.pi * TIP.work * np.sqrt(TIP.size) / (2e6 / 0.75)) ** (2.0 / 3.0)
     places = np.array([0.0, -BELOW, fold - BELOW, fold]) - ZERO

@@ -1,0 +1,78 @@
+"""Derivatives of the law with respect to the free parameters: differences, on a machine at its separations."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from roughmdr.fitting.model import Model, Point
+from roughmdr.fitting.parameters import length_scale
+from roughmdr.fitting.spring import Spring
+from roughmdr.numerics.arguments import Floats
+
+_LEAST_ERROR = 1e-12  # relative error of the force of a contact
+_LONGEST_STEP = 0.01  # largest change of x in differences
+_JUMP = 0.5  # ratio of the differences to both sides of x, beyond which one of them holds a jump
+
+
+def slopes_of(model: Model, x: Floats) -> Floats:
+    """Return the derivatives [step, parameter] of the deviations; RoughmdrError where the law has none.
+
+    On a machine they are taken at the separations that the law has, and its spring yields to them.
+    """
+    middle = model.point(x)
+    if model.curve.control == "separation" or not (model.exact and middle.load.size):
+        return _at_given(model, middle)
+    with model.bearing(middle.load):
+        at_given = _at_given(model, model.point(x))
+        spring = _spring(model, x)
+    model.near = None if model.jumps else spring
+    return spring.yielded(at_given)
+
+
+def yielded(model: Model, x: Floats, change: Floats) -> Floats:
+    """Return the change of the load at the measured control that a ``change`` at given separation makes."""
+    if model.curve.control == "separation":
+        return change
+    with model.bearing(model.point(x).load):
+        return _spring(model, x).yielded(change)
+
+
+def _at_given(model: Model, middle: Point) -> Floats:
+    """Return the derivatives of the deviations where the load that stretches a spring stays."""
+    step = _step(middle)
+
+    def slope(direction: Floats) -> Floats:
+        sides = [model.point_at(middle.x + sign * step * direction).deviations for sign in (1.0, -1.0)]
+        return _difference(model, middle.deviations, sides, step)
+
+    return np.stack([slope(direction) for direction in np.eye(middle.x.size)], axis=1)
+
+
+def _spring(model: Model, x: Floats) -> Spring:
+    """Return how the load changes with the separation on a machine, whose spring bears a given load."""
+    middle, scene = model.point(x), model.scene(x)
+    step = _step(middle) * length_scale(scene, model.curve)
+
+    def slope(steps: NDArray[np.bool_]) -> Floats:
+        sides = [model.load(x, model.curve.values + sign * step * steps).load for sign in (1.0, -1.0)]
+        return _difference(model, middle.load, sides, step)
+
+    return Spring.of(model.curve.values, middle.load, float(model.stretch(scene, np.ones(1))[0]), slope)
+
+
+def _step(middle: Point) -> float:
+    """Return the best step of differences, the cube root of the error of the law."""
+    return float(min(max(middle.error, _LEAST_ERROR) ** (1.0 / 3.0), _LONGEST_STEP))
+
+
+def _difference(model: Model, here: Floats, sides: list[Floats], step: float) -> Floats:
+    """Return the derivative from what is to both sides, or to the one with a law; RoughmdrError without any.
+
+    Where a contact jumps within one of them, the other, which is much smaller, is taken alone.
+    """
+    pair = np.array([sides[0] - here, here - sides[1]])
+    pair = pair[np.isfinite(pair).all(axis=1)] / step
+    if not pair.size:
+        raise model.last_error
+    sizes = np.abs(pair)
+    smaller = np.where(sizes[0] < sizes[-1], pair[0], pair[-1])
+    return np.asarray(np.where(sizes.min(axis=0) < _JUMP * sizes.max(axis=0), smaller, pair.mean(axis=0)))
