@@ -1,5 +1,6 @@
 """The expected law of an ensemble: integrals over the distribution of its asperities, instead of draws from it."""
 
-from roughmdr.expected.compute import compute, force_of_equal_shapes, prepare
+from roughmdr.expected.compute import compute, prepare
+from roughmdr.expected.force import ForceRule, expected_force
 
-__all__ = ["compute", "force_of_equal_shapes", "prepare"]
+__all__ = ["ForceRule", "compute", "expected_force", "prepare"]

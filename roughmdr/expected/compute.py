@@ -36,10 +36,11 @@ from roughmdr.loading.staircase import no_memory
 from roughmdr.model_error import Assumptions, Givens, crowd_warnings
 from roughmdr.model_error.distances import FEW, error_of_few
 from roughmdr.model_error.interaction import poisson_overlap
-from roughmdr.numerics.arguments import Floats, Ints
+from roughmdr.numerics.arguments import Floats
 
 _MAX_ERROR = 0.1  # error, over the largest force, above which the law is refused
-_KERNEL_ERROR = 1e-12  # relative error of the force of a contact, to which the kernels are tested
+KERNEL_ERROR = 1e-12
+"""Relative error of the force of a contact, to which the kernels are tested."""
 _HEAVY_TAIL = 0.05  # tail index below which the heights left out bear a negligible force
 
 
@@ -85,7 +86,7 @@ def compute(
         couple(total, found)
     largest = float(np.abs(total[FORCE]).max())
     closest = float(separation.min())
-    total[ERROR] += (chosen.error + _KERNEL_ERROR) * largest + count * _tail_force(nodes, closest)
+    total[ERROR] += (chosen.error + KERNEL_ERROR) * largest + count * _tail_force(nodes, closest)
     if total[ERROR].max() == math.inf:
         raise OutOfRange(
             f"the mean force of these {source.shape_name}s is not known to have a bound: too many of them "
@@ -113,7 +114,7 @@ def compute(
         neighbours_error=_neighbours_error(source, total) if interaction is None else None,
     )
     crowded = crowd_warnings(assumptions.neighbours_error, total[AREA] / nominal_area)
-    warnings = (*_warnings(float(total[ERROR].max()) / largest if largest > 0.0 else 0.0, error_of_others), *crowded)
+    warnings = (*warnings_of(float(total[ERROR].max()) / largest if largest > 0.0 else 0.0, error_of_others), *crowded)
     law = LoadSeparation.of(total, names, path.separation, givens, assumptions, products, validity.tabor, model)
     return law._replace(warnings=warnings, pull_off=pull_off_of(problem, split, chosen, total[FORCE]))
 
@@ -125,30 +126,6 @@ def _neighbours_error(source: Source, total: Floats) -> Floats | None:
         return None
     contacts, side = total[COUNT], math.sqrt(area)
     return error_of_few(total[AREA], contacts, contacts * (1.0 - 1.0 / count), mean_inverse_distance(side, side))
-
-
-@np.errstate(all="ignore")  # numbers that no float can hold are refused where the whole law is computed
-def force_of_equal_shapes(
-    source: Source, path: LoadingPath, effective_modulus: float, adhesion: Adhesion
-) -> tuple[Floats, float, Ints]:
-    """Return the force [N] alone at each step, of asperities whose shape parameters are not drawn, its error bound over
-    its largest value, and how many populations of one height are in contact at each step.
-
-    Force and error are those of ``compute``; E* [Pa]. OutOfRange where a contact is not representable.
-    """
-    if len(adhesion.candidates) > 1:
-        one = as_ensemble(source, source.nodes(Rule.smooth(1))).columns
-        validity = jkr_validity(source.shape_name, source.sigma, one, effective_modulus, adhesion)
-        adhesion = adhesion.resolved(validity.jkr_error)
-    nodes = set_up(MeanProblem(source, path, effective_modulus, adhesion, (FORCE,)), Rule.smooth(1))
-    total, _ = totals_of(nodes, path.separation, (FORCE,), list(range(path.separation.size)))
-    largest = float(np.abs(total[FORCE]).max())
-    error = _KERNEL_ERROR + (float(total[ERROR].max()) / largest if largest > 0.0 else 0.0)
-    touching = np.zeros(path.separation.size, dtype=np.int64)
-    for node in nodes:
-        if node.heights.all_equal:
-            touching[node.in_contact.at_steps(np.ones(touching.size, dtype=np.bool_)).around(0.0).step] += 1
-    return source.expected_count * total[FORCE], error, touching
 
 
 def _shift(problem: MeanProblem, interaction: Interaction | None) -> Shift | None:
@@ -199,7 +176,7 @@ def _rows(variables: Iterable[str]) -> tuple[tuple[int, ...], tuple[int, ...]]:
     return tuple(dict.fromkeys([*asked, *needed])), tuple(row for row in needed if row not in asked)
 
 
-def _warnings(error: float, error_of_others: float) -> tuple[str, ...]:
+def warnings_of(error: float, error_of_others: float) -> tuple[str, ...]:
     """Warn of errors of the force and of other variables, over their largest; OutOfRange where they are too large."""
     if not error <= _MAX_ERROR:
         raise OutOfRange(

@@ -13,7 +13,7 @@ from roughmdr.aggregate.under_machine import separations_of
 from roughmdr.batch.realization import simulate_realization
 from roughmdr.batch.usual_path import machine_path
 from roughmdr.errors import OutOfRange, RoughmdrError, SceneError
-from roughmdr.expected import force_of_equal_shapes
+from roughmdr.expected import ForceRule, expected_force
 from roughmdr.fitting.measured import MeasuredCurve
 from roughmdr.fitting.parameters import MACHINE, OFFSET, Parameter, free_parameters
 from roughmdr.fitting.spring import Spring
@@ -34,6 +34,8 @@ class Load(NamedTuple):
     """Relative error of the law."""
     touching: NDArray[np.integer]
     """A number that changes at each step at which asperities of one height make or lose contact."""
+    rule: ForceRule | None = None
+    """The rule over shape parameters by which it was found, where there is one."""
 
 
 class Point(NamedTuple):
@@ -48,6 +50,8 @@ class Point(NamedTuple):
     """The steps after which the contact is made or lost."""
     load: Floats
     """[N or Pa]; empty where the law cannot be computed."""
+    rule: ForceRule | None = None
+    """The rule over shape parameters by which the law was found, where there is one."""
 
 
 _NONE = Point(np.empty(0), np.empty(0), 0.0, (), np.empty(0))
@@ -68,12 +72,13 @@ class Model:
         self.curve = curve
         self.parameters: list[Parameter] = free_parameters(free, scene, self._table, curve)
         self.bounds: tuple[Floats, Floats] = tuple(np.transpose([each.bounds for each in self.parameters]))
-        alike = scene.asperities.node_count(2) == scene.asperities.node_count(1)
-        self._is_plain = alike and scene.interaction is None and not scene.unlike
+        self._is_plain = scene.interaction is None and not scene.unlike
         self.adheres = scene.work > 0.0
         self.jumps = scene.asperities.equal_heights and self.adheres
         self._path = LoadingPath.along(curve.values, unload=False, adhesive=scene.work > 0.0)
-        self._borne: Floats | None = None
+        self.borne: Floats | None = None
+        """Load that the spring of a machine bears, where it is not that of the law."""
+        self._rule: ForceRule | None = None
         self.near: Spring | None = None
         """How the load on a machine changes near the last parameters whose slopes were found, where it does not jump.
         """
@@ -84,7 +89,7 @@ class Model:
     @property
     def exact(self) -> bool:
         """Whether the spring of a machine bears the load of the law, not one that is given."""
-        return self._borne is None
+        return self.borne is None
 
     def backwards(self) -> "Model":
         """Return the model of the curve as if it had been measured from its end."""
@@ -113,9 +118,10 @@ class Model:
     def load(self, x: Floats, values: Floats) -> Load:
         """Return the load of the law along a control; RoughmdrError where there is no law."""
         if self.exact and self.near is not None and values is self.curve.values:
-            found = self.near.found(lambda load: self._borne_by(x, load).load)
-            if found is not None:
-                return self._borne_by(x, found)
+            first = self._borne_by(x, self.near.load, None)
+            load = self.near.found(first.load, lambda load: self._borne_by(x, load, first.rule).load)
+            if load is not None:
+                return first._replace(load=load)
         self.evaluations += 1
         scene = self.scene(x)
         path = self._path_in(scene, x, values)
@@ -125,14 +131,13 @@ class Model:
             law = simulate_realization(scene, path, 0, [self.curve.quantity], "expected")
             load = law.variables[self.curve.quantity]
             return Load(load, law.numerical_error, (load != 0.0).astype(np.int64))
-        modulus, adhesion = scene.effective_modulus, scene.adhesion_model
-        force, error, touching = force_of_equal_shapes(scene.asperities, path, modulus, adhesion)
-        area = 1.0 if self.curve.quantity == "force" else scene.nominal_area or np.nan
-        return Load(force / area, error, touching)
+        own = scene.asperities, path, scene.effective_modulus, scene.adhesion_model
+        force, error, touching, rule = expected_force(*own, self._rule)
+        return Load(force / self._area(scene), error, touching, rule)
 
-    def _borne_by(self, x: Floats, load: Floats) -> Load:
+    def _borne_by(self, x: Floats, load: Floats, rule: ForceRule | None) -> Load:
         """Return the load of the law where the spring of the machine bears another."""
-        with self.bearing(load):
+        with self.held(load=load, rule=rule):
             return self.load(x, self.curve.values)
 
     def _path_in(self, scene: Scene, x: Floats, values: Floats) -> LoadingPath | MachinePath:
@@ -142,17 +147,19 @@ class Model:
         steps = values + self._offset(x)
         if self.curve.control == "remote" and self.exact:
             return machine_path(scene, steps)
-        stretch = 0.0 if self._borne is None else self.stretch(scene, self._borne)
+        stretch = 0.0 if self.borne is None else self.stretch(scene, self.borne)
         return LoadingPath.along(steps + stretch, unload=False, adhesive=scene.work > 0.0)
 
     @contextmanager
-    def bearing(self, load: Floats) -> Iterator[None]:
-        """Let the spring of a machine bear a load [N or Pa]: then the separation is known, and the law is fast."""
-        before, self._borne, self._last = (self._borne, self._last), load, _NONE
+    def held(self, *, load: Floats | None = None, rule: ForceRule | None = None) -> Iterator[None]:
+        """Hold what the law takes long to find: the rule over shape parameters, and the load [N or Pa] that the spring
+        of a machine bears, by which the separation is known.
+        """
+        before, self.borne, self._rule, self._last = (self.borne, self._rule, self._last), load, rule, _NONE
         try:
             yield
         finally:
-            self._borne, self._last = before
+            self.borne, self._rule, self._last = before
 
     def deviations(self, x: Floats) -> Floats:
         """Return law minus measurement, weighted; inf where the law cannot be computed, as ``last_error`` says."""
@@ -168,19 +175,22 @@ class Model:
         """Return likewise the law, which is not kept."""
         nothing = Point(x, np.full(self.curve.load.size, np.inf), 0.0, (), np.empty(0))
         try:
-            load, error, touching = self.load(x, self.curve.values)
+            load, error, touching, rule = self.load(x, self.curve.values)
         except RoughmdrError as failure:
             self.last_error = failure
             return nothing
         found = (load - self.curve.load) / self.curve.weight
         if not np.isfinite(found).all():
             return nothing
-        return Point(x, found, error, tuple(changes_of(touching).tolist()), load)
+        return Point(x, found, error, tuple(changes_of(touching).tolist()), load, rule)
 
     def stretch(self, scene: Scene, load: Floats) -> Floats:
         """Return the stretch of the machine's spring by a load [m]."""
-        area = scene.nominal_area if self.curve.quantity == "pressure" else None
-        return load * (1.0 if area is None else area) / (scene.path.machine_stiffness or np.inf)
+        return load * self._area(scene) / (scene.path.machine_stiffness or np.inf)
+
+    def _area(self, scene: Scene) -> float:
+        """Return the force over the load: the nominal area [m2] of a pressure."""
+        return 1.0 if self.curve.quantity == "force" else scene.nominal_area or np.nan
 
     def _offset(self, x: Floats) -> float:
         """Return the offset that is added to the measured control [m]."""

@@ -38,7 +38,7 @@ def search(model: Model) -> Found:
     if model.curve.control == "separation":
         found = _search(model)
     else:
-        with model.bearing(model.curve.load):
+        with model.held(load=model.curve.load):
             near = _search(model)
         found = _follow(model, near.x)
     return _settled(model, found) if model.jumps and _cost(found) > 0.0 and found.slopes.any() else found

@@ -20,8 +20,9 @@ def slopes_of(model: Model, x: Floats) -> Floats:
     """
     middle = model.point(x)
     if model.curve.control == "separation" or not (model.exact and middle.load.size):
-        return _at_given(model, middle)
-    with model.bearing(middle.load):
+        with model.held(load=model.borne, rule=middle.rule):
+            return _at_given(model, middle)
+    with model.held(load=middle.load, rule=middle.rule):
         at_given = _at_given(model, model.point(x))
         spring = _spring(model, x)
     model.near = None if model.jumps else spring
@@ -32,7 +33,8 @@ def yielded(model: Model, x: Floats, change: Floats) -> Floats:
     """Return the change of the load at the measured control that a ``change`` at given separation makes."""
     if model.curve.control == "separation":
         return change
-    with model.bearing(model.point(x).load):
+    middle = model.point(x)
+    with model.held(load=middle.load, rule=middle.rule):
         return _spring(model, x).yielded(change)
 
 

@@ -55,21 +55,17 @@ class Spring(NamedTuple):
             whole = whole + np.multiply.outer(slope, (whole[turn] / each[turn]).mean(axis=0))
         return np.asarray(whole / each)
 
-    def found(self, bearing: Callable[[Floats], Floats]) -> Floats | None:
-        """Return the load that is that of the contacts where the spring bears it; None where that is not certain.
+    def found(self, first: Floats, bearing: Callable[[Floats], Floats]) -> Floats | None:
+        """Return the load that the contacts have where the spring bears it; None where that is not certain.
 
-        ``bearing`` gives the load of the contacts where the spring bears another.
+        ``bearing`` gives the load of the contacts where the spring bears another, ``first`` where it bears ``load``.
         """
-        if not (1.0 - self.own > _FIRM).all():
-            return None
-        load = self.load
-        for _ in range(_ITERATIONS):
-            excess = bearing(load) - load
-            if not np.isfinite(excess).all():
-                return None
-            if np.abs(excess).max() <= _EXACT * np.abs(load).max():
-                return load
+        load, excess = self.load, first - self.load
+        for _ in range(_ITERATIONS if (1.0 - self.own > _FIRM).all() else 0):
             load = load + self.yielded(excess)
+            excess = bearing(load) - load
+            if not np.abs(excess).max() > _EXACT * np.abs(load).max():
+                return load if np.isfinite(excess).all() else None
         return None
 
 

@@ -1,0 +1,81 @@
+"""The force alone of the expected law, by a rule over the shape parameters that was found for parameters nearby."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from roughmdr.aggregate import LoadingPath
+from roughmdr.aggregate.tabor import jkr_validity
+from roughmdr.aggregate.totals import ERROR, FORCE
+from roughmdr.ensemble import Source
+from roughmdr.ensemble.nodes import Rule
+from roughmdr.errors import OutOfRange
+from roughmdr.expected.compute import KERNEL_ERROR, as_ensemble, warnings_of
+from roughmdr.expected.converge import converge_at_kinks
+from roughmdr.expected.detached import PartialRule, sums_of
+from roughmdr.expected.node import MeanProblem, set_up
+from roughmdr.kernels.adhesion import Adhesion
+from roughmdr.numerics.arguments import Floats, Ints
+
+
+class ForceRule(NamedTuple):
+    """Rules over the shape parameters, one for each that is random, by which a force was found."""
+
+    rules: tuple[Rule, ...]
+    smooth: bool
+    """Whether they are those for smooth functions."""
+    error: float
+    """Error bound of the force over its largest value."""
+
+
+class Force(NamedTuple):
+    """The force of the expected law along a path."""
+
+    force: Floats
+    """[N]"""
+    error: float
+    """Error bound over the largest force."""
+    touching: Ints
+    """Number of populations of one height in contact at each step; 1 in contact and 0 out of it where shapes are drawn.
+    """
+    rule: ForceRule | None
+    """The rule by which it was found; None where steps had rules of their own."""
+
+
+@np.errstate(all="ignore")  # numbers that no float can hold are refused
+def expected_force(
+    source: Source, path: LoadingPath, effective_modulus: float, adhesion: Adhesion, rule: ForceRule | None = None
+) -> Force:
+    """Return the force of ``compute``; E* [Pa]. With a ``rule`` none is sought, and its error is taken for known.
+
+    OutOfRange where a contact is not representable, or the error is too large.
+    """
+    alike = source.node_count(2) == source.node_count(1)
+    if len(adhesion.candidates) > 1:
+        coarse = as_ensemble(source, source.nodes(Rule.smooth(1))).columns
+        validity = jkr_validity(source.shape_name, source.sigma, coarse, effective_modulus, adhesion)
+        adhesion = adhesion.resolved(validity.jkr_error)
+    problem, split = MeanProblem(source, path, effective_modulus, adhesion, (FORCE,)), None
+    if alike:
+        rule = ForceRule((Rule.smooth(1),), smooth=False, error=0.0)
+    if rule is None:
+        chosen, split = converge_at_kinks(problem, dissipating=False)
+        rule, nodes = ForceRule(chosen.rules, chosen.smooth, chosen.error), chosen.nodes
+    else:
+        nodes = set_up(problem, *rule.rules)
+    steps = list(range(path.separation.size))
+    partial = PartialRule.of(problem, rule.rules, nodes) if rule.smooth else None
+    total, _ = sums_of(problem, partial, nodes, steps, dissipating=False)
+    if split is not None:
+        for step in split.cuts:
+            total[:, step] = split.total(step, dissipating=False)
+    if not np.isfinite(total).all():
+        raise OutOfRange("the expected law is not finite")
+    largest = float(np.abs(total[FORCE]).max())
+    error = KERNEL_ERROR + rule.error + (float(total[ERROR].max()) / largest if largest > 0.0 else 0.0)
+    warnings_of(error, 0.0)
+    touching = (total[FORCE] != 0.0).astype(np.int64) * (not alike)
+    for node in nodes if alike else ():
+        if node.heights.all_equal:
+            touching[node.in_contact.at_steps(np.ones(touching.size, dtype=np.bool_)).around(0.0).step] += 1
+    return Force(source.expected_count * total[FORCE], error, touching, rule if split is None else None)
