@@ -14,6 +14,7 @@ import numpy as np
 
 from roughmdr.batch.choice import Choice, length
 from roughmdr.batch.costs import seconds
+from roughmdr.batch.derivatives import check_derivatives
 from roughmdr.batch.foresee import foresee_law, some_cells
 from roughmdr.batch.plan import Cell, Plan, make_plan
 from roughmdr.batch.stopping_rule import FEWEST
@@ -91,7 +92,9 @@ def plan_scene(scene: Scene) -> Plan:
     """
     of = None if scene.accuracy is None else scene.accuracy.of
     if of is None:
-        return make_plan(scene)
+        plan = make_plan(scene)
+        check_derivatives(plan)
+        return plan
     forecasts, lines = list[_Forecast](), list[str]()
     for name, candidate in _candidates(scene, of):
         if min((each.cost for each in forecasts), default=math.inf) <= _NEGLIGIBLE:

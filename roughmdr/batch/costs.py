@@ -17,6 +17,7 @@ from roughmdr.variables import LOSSES
 
 START_UP = 1.2
 """Seconds of ``roughmdr run`` for a scene of one asperity, once its kernels are compiled: 1.1 to 1.3 s of one core."""
+_LAWS_OF_DERIVATIVE = 4  # number of laws beside that of the scene, for each number that it is differentiated by
 _RUN, _DRAW = 1.5e-4, 2e-7  # seconds to begin a run; to draw and sort an asperity
 _STRATIFY = 8e-4  # seconds to begin stratified draws
 _VISIT, _VISIT_PROFILE, _VISIT_DUGDALE = 5e-9, 4e-8, 8e-8  # seconds of an asperity at a step
@@ -67,7 +68,8 @@ _BRANCH, _STEP_IN_FILE = 36, 68  # bytes: the name of the branch of a step in me
 
 def seconds(cell: Cell, estimator: str) -> float:
     """Return about how long one run takes [s], with what stages compute beside its law."""
-    return law_seconds(cell, estimator) + beside(cell).seconds
+    laws = 1 + _LAWS_OF_DERIVATIVE * len(cell.scene.output.derivatives)
+    return laws * law_seconds(cell, estimator) + beside(cell).seconds
 
 
 def law_seconds(cell: Cell, estimator: str) -> float:

@@ -38,6 +38,7 @@ if TYPE_CHECKING:
     show_default=True,
     help="Reuse what the output or an interrupted run already contains, or start anew.",
 )
+@click.option("--derivatives", default="", metavar="KEYS", help="Numbers of the scene to differentiate the law by.")
 @click.option("--quiet", is_flag=True, help="Print nothing but errors.")
 @click.option("--verbose", is_flag=True, help="Also print what was left out, and why.")
 @json_option
@@ -59,6 +60,8 @@ def run(
         from roughmdr.report.summary import describe_failed, describe_result
         from roughmdr.scene import read
 
+        if keys := [key.strip() for key in others.pop("derivatives").split(",") if key.strip()]:
+            changes = (*changes, f"output.derivatives={keys}")
         validated = read(scene, changes)  # before anything heavy is imported
         from roughmdr.batch.choose import plan_scene
         from roughmdr.result.view import ResultView

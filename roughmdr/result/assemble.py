@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from roughmdr.asperity.validity import ValidityLimits
 from roughmdr.batch.collect import CollectedResults
+from roughmdr.batch.derivatives import derivatives_of
 from roughmdr.batch.plan import Plan
 from roughmdr.batch.resume.keys import versions
 from roughmdr.batch.rounds import CellMethod
@@ -97,6 +98,10 @@ def assemble(
         warnings += more
     if warnings:
         result.attrs["warnings"] = "\n".join(warnings)
+    if scene.output.derivatives:
+        found, numbers = derivatives_of(plan)
+        data |= found
+        coordinates |= numbers
     if plan.control in FORCES:
         data |= errors_along(ResultView(result))
     return result._replace(attrs={**result.attrs, "checksum": result.checksum()})

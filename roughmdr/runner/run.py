@@ -2,6 +2,7 @@
 
 import threading
 import warnings
+from collections.abc import Iterable
 from contextlib import ExitStack
 from dataclasses import dataclass
 from pathlib import Path
@@ -51,6 +52,7 @@ def run(
     resume: bool = True,
     *,
     set: dict[str, Any] | None = None,  # noqa: A002 - as --set
+    derivatives: str | Iterable[str] = (),
     quiet: bool = True,
 ) -> "xr.Dataset":
     """Compute a scene; with ``out``, write the result there as netCDF when all of it is done.
@@ -70,6 +72,9 @@ def run(
     set : dict, optional
         Keys of the scene, dotted, with the values that they get, as in ``{"adhesion.work": "10 mJ/m^2"}``. A key that
         is set is no longer swept; names of files are relative to the current folder.
+    derivatives : iterable of str, optional
+        Keys of numbers of the scene, as ``output.derivatives`` has them: of an expected law the result then holds
+        ``force_derivative`` and so on, with ``force_derivative_error``, over ``parameter``.
     quiet : bool
         Leave out the progress display.
 
@@ -105,7 +110,8 @@ def run(
     A scene file with another work of adhesion: ``rm.run("scene.toml", set={"adhesion.work": "10 mJ/m^2"})``.
     """
     target = None if out is None else Path(out)
-    plan = plan_scene(read(scene, set or {}))
+    keys = [derivatives] if isinstance(derivatives, str) else list(derivatives)
+    plan = plan_scene(read(scene, {**(set or {}), **({"output.derivatives": keys} if keys else {})}))
     result = execute(plan, target, Backend(scheduler, workers), resume=resume, quiet=quiet)
     warn_limits(result.attrs.get("warnings", "").splitlines())
     status = result.variables["status"].values

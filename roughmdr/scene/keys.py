@@ -1,6 +1,8 @@
-"""Dotted keys of a scene: those that it can have, the reader of each, and setting one in a table."""
+"""Dotted keys of a scene: those that it can have, the reader of each, and getting and setting one in a table."""
 
 from collections.abc import Iterator
+from functools import reduce
+from operator import getitem
 from typing import Any, Literal, get_args, get_origin
 
 from pydantic import BaseModel
@@ -8,8 +10,9 @@ from pydantic import BaseModel
 from roughmdr.ensemble.random.distribution_reader import DistributionReader
 from roughmdr.errors import RoughmdrError
 from roughmdr.schema.faults import sections_of
-from roughmdr.schema.quantities import Name, Reader
+from roughmdr.schema.quantities import Name, Reader, WholeNumber
 from roughmdr.schema.section import reader_of
+from roughmdr.schema.wording import short_repr, suggestion
 
 
 def key_readers(sections: list[type[BaseModel]], table: Any, prefix: str = "") -> Iterator[tuple[str, Reader]]:
@@ -39,6 +42,43 @@ def set_key(table: dict[str, Any], key: str, value: object) -> None:
         if not isinstance(table, dict):
             raise RoughmdrError(f"{'.'.join(outer[: position + 1])} is not a table")
     table[last] = value
+
+
+def number_at(key: str, readers: dict[str, Reader], table: dict[str, Any]) -> tuple[Reader, float]:
+    """Return the reader and the value [SI] of a key that holds one number of a scene, not a whole one; RoughmdrError,
+    with what is expected, where it does not.
+    """
+    reader = readers.get(key)
+    if reader is None or not reader.dimension:
+        numeric = sorted(name for name, each in readers.items() if each.dimension and entry_at(name, table) is not None)
+        raise RoughmdrError(f"is no number of the scene{suggestion(key, numeric)}")
+    entry = entry_at(key, table)
+    if entry is None:
+        raise RoughmdrError("is not in the scene; give it there")
+    if isinstance(reader, WholeNumber):
+        raise RoughmdrError("takes whole numbers only, which cannot be varied")
+    if isinstance(entry, dict | list):
+        raise RoughmdrError(f"is {short_repr(entry)}; name one number in it, like {key}.mean")
+    read = reader(entry)
+    return reader, float(getattr(read, "constant", read))
+
+
+def must_be_positive(reader: Reader, value: float) -> bool:
+    """Return whether a number, now ``value``, is one that must stay above 0."""
+    above, at_least = getattr(reader, "above", None), getattr(reader, "at_least", None)
+    try:
+        reader(-abs(value) or -1.0)
+    except RoughmdrError:
+        return (at_least if above is None else above) in (None, 0.0)
+    return False
+
+
+def entry_at(key: str, table: dict[str, Any]) -> Any:
+    """Return the entry of a dotted key; None where there is none."""
+    try:
+        return reduce(getitem, key.split("."), table)
+    except (KeyError, TypeError):
+        return None
 
 
 def _allows(section: type[BaseModel], data: dict[str, Any]) -> bool:

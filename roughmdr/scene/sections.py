@@ -113,7 +113,10 @@ class Output(Section):
     keep: Literal["curves", "statistics"] = "curves"
     """"curves" of each realisation, or their "statistics": mean, standard error, least and greatest."""
 
-    @field_validator("variables")
+    derivatives: list[str] = Field(default=[])
+    """Keys of numbers of the scene, with respect to which an expected law is differentiated."""
+
+    @field_validator("variables", "derivatives")
     @classmethod
     def _unique(cls, value: list[str]) -> list[str]:
         return list(dict.fromkeys(value))

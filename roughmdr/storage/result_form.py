@@ -11,6 +11,8 @@ from roughmdr.storage.labelled import Array, Labelled
 from roughmdr.variables import (
     CELL_VARIABLES,
     COORDINATES,
+    DERIVATIVE,
+    DERIVATIVE_ERROR,
     LAW_VARIABLES,
     MODEL_ERROR,
     PULL_OFF_NUMBERS,
@@ -75,6 +77,9 @@ def forms_of(runs: tuple[str, ...]) -> dict[str, Form]:
         for statistic in ("", "_mean")
     }
     forms |= {name: Form.of(variable, runs) for name, variable in RUN_DIAGNOSTICS.items()}
+    for ending in (DERIVATIVE, DERIVATIVE_ERROR):
+        forms |= {f"{name}{ending}": Form((*cells, "parameter", "step"), "f", "") for name in LAW_VARIABLES}
+        forms |= {f"{name}{ending}": Form((*cells, "parameter"), "f", "") for name in PULL_OFF_NUMBERS}
     return forms | {name: Form.of(each, cells) for name, each in (PULL_OFF_OF_CELLS | CELL_VARIABLES).items()}
 
 

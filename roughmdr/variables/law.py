@@ -62,6 +62,9 @@ WITH_MODEL_ERROR = (
 )
 """Variables whose error of the model can be told."""
 
+DERIVATIVE, DERIVATIVE_ERROR = "_derivative", "_derivative_error"
+"""Endings of the names of derivatives with respect to numbers of the scene, and of their errors."""
+
 REFERENCE_VARIABLES = declare(
     ("reference_separation", "m", "rigid flat above the datum plane under the same load by boundary elements"),
     ("reference_force", "N", "normal force by boundary elements"),

@@ -188,6 +188,7 @@ BASES: dict[str, dict[str, Any]] = {
             "nominal": {**body, "error": 1e-2},
             "path": {"separation": ["1 sigma", "0.5 sigma"]},
             "batch": {"estimator": "expected"},
+            "output": {"derivatives": ["material.modulus"]},
         }
         for body in (
             {"radius": "10 mm"},

@@ -56,6 +56,12 @@ LARGE = {
         output={"variables": ["tangential_force", "friction_energy", "force"]},
         batch={"realizations": 2},
     ),
+    "differentiated": scene(
+        asperities={**ASPERITIES, "count": 20},
+        path=PATH,
+        output={"variables": ["force"], "derivatives": ["material.modulus", "asperities.height.std"]},
+        batch={"estimator": "expected"},
+    ),
     "elements": scene(
         asperities={**ASPERITIES, "count": 4, "patch": "100 um"},
         adhesion=None,
