@@ -1,5 +1,7 @@
 """Derivatives of expected laws with respect to numbers of their scenes, by differences that tell their own error."""
 
+from typing import NamedTuple
+
 import numpy as np
 
 from roughmdr.batch.plan import Cell, Plan
@@ -23,62 +25,86 @@ _OF_FOURTH = 0.5  # error of the derivative over the fourth difference: 0.25 at 
 _MACHINE = "path.machine_stiffness"
 
 
+class Derivatives(NamedTuple):
+    """Derivatives of the variables of a plan, as arrays, and what has none."""
+
+    variables: dict[str, Array]
+    """Over the swept keys, ``parameter`` and, where the variable has them, steps; each with its error."""
+    coordinates: dict[str, Array]
+    """Keys and units of the parameters."""
+    warnings: list[str]
+
+    @classmethod
+    def of(cls, plan: Plan) -> "Derivatives":
+        """Return them; NaN in cells where a law has none.
+
+        They are exact to about 1e-9 of what a change by the number itself makes, and less where contacts are made or
+        lost nearby, as their errors tell.
+        """
+        keys, names, steps = plan.scene.output.derivatives, plan.variables, plan.steps
+        found = np.full((len(plan.cells), len(keys), 2, len(names) * steps + len(PULL_OFF_NUMBERS)), np.nan)
+        failures = list[str]()
+        for number, cell in enumerate(plan.cells):
+            try:
+                found[number] = _derivatives(cell, names, keys)
+            except RoughmdrError as error:
+                failures.append(f"{plan.name_of(number, 0)}: {error}")
+        found = found.reshape(*plan.sizes.values(), *found.shape[1:])
+        declared = {name: LAW_VARIABLES[name] for name in names} | (PULL_OFF_NUMBERS if plan.unloads else {})
+        dims, variables, first = (*plan.sizes, "parameter"), dict[str, Array](), 0
+        for name, variable in declared.items():
+            count = steps if name in names else 1
+            for row, (ending, words) in enumerate({DERIVATIVE: "", DERIVATIVE_ERROR: "error of the "}.items()):
+                about = f"{words}derivative of the {variable.long_name}, with respect to a number of the scene, in SI"
+                values, attrs = found[..., row, first : first + count], {"long_name": about}
+                over = Array((*dims, "step"), values, attrs) if name in names else Array(dims, values[..., 0], attrs)
+                variables[f"{name}{ending}"] = over
+            first += count
+        units = [spelled_in_results(_number(plan.cells[0], key).unit) for key in keys]
+        coordinates = {
+            "parameter": Array(("parameter",), np.array(keys), {"long_name": "key of the number in the scene"}),
+            "parameter_unit": Array(("parameter",), np.array(units), {"long_name": "unit of the number"}),
+        }
+        told = f"no derivatives of {len(failures)} of {len(plan.cells)} cells: " if failures else ""
+        return cls(variables, coordinates, [f"{told}{failures[0]}"] if failures else [])
+
+
+class _Number(NamedTuple):
+    """A number of a scene that is varied."""
+
+    value: float
+    """In SI."""
+    unit: str
+    scale: float
+    """On which it is changed."""
+
+
 def check_derivatives(plan: Plan) -> None:
     """Raise SceneError where a law of a plan cannot be differentiated as its scene asks."""
-    keys = plan.scene.output.derivatives
-    if keys and set(plan.scene.estimators) != {"expected"}:
-        fault = Fault(
-            "output.derivatives", short_repr(keys), 'are those of an expected law: batch.estimator = "expected"'
-        )
-        raise plan.scene.located(SceneError.of([fault]))
-    for cell in plan.cells:
-        for key in keys:
-            for side in (_SIDES[0], _SIDES[-1]):
-                _varied(cell, key, side)
-
-
-def derivatives_of(plan: Plan) -> tuple[dict[str, Array], dict[str, Array]]:
-    """Return the derivatives of all variables of a plan with their errors, and the keys and units of the parameters.
-
-    That of a variable over its steps has the dimensions of the swept keys, ``parameter`` and ``step``. It is exact to
-    about 1e-9 of what a change by the number itself makes; the error is larger where contacts are made or lost nearby.
-    """
-    keys, names = plan.scene.output.derivatives, plan.variables
-    found = np.array([_derivatives(cell, names, keys) for cell in plan.cells])
-    dims, sizes = (*plan.sizes, "parameter"), (*plan.sizes.values(), len(keys))
-    found = found.reshape(*sizes, *found.shape[2:])
-    variables, steps = dict[str, Array](), plan.steps
-    for ending, values, words in (
-        (DERIVATIVE, found[..., 0, :], ""),
-        (DERIVATIVE_ERROR, found[..., 1, :], "error of "),
-    ):
-        about = f"{words}derivative of the {{}} with respect to a number of the scene, in SI"
-        for number, name in enumerate(names):
-            attrs = {"long_name": about.format(LAW_VARIABLES[name].long_name)}
-            of_name = values[..., number * steps : (number + 1) * steps]
-            variables[f"{name}{ending}"] = Array((*dims, "step"), of_name, attrs)
-        for number, (name, variable) in enumerate(PULL_OFF_NUMBERS.items() if plan.unloads else ()):
-            attrs = {"long_name": about.format(variable.long_name)}
-            variables[f"{name}{ending}"] = Array(dims, values[..., len(names) * steps + number], attrs)
-    units = [spelled_in_results(_number(plan.cells[0], key)[1]) for key in keys]
-    return variables, {
-        "parameter_name": Array(("parameter",), np.array(keys), {"long_name": "key of the number in the scene"}),
-        "parameter_unit": Array(("parameter",), np.array(units), {"long_name": "unit of the number"}),
-    }
+    keys, estimators = plan.scene.output.derivatives, {*plan.scene.estimators}
+    for key in keys if estimators == {"expected"} else ():
+        for cell in plan.cells:
+            try:
+                for side in (_SIDES[0], _SIDES[-1]):
+                    _varied(cell, key, _number(cell, key), side)
+            except RoughmdrError as error:
+                told = f"{error}; it is changed by {2.0 * _STEP:g} of it, or of its scale, to both sides"
+                raise plan.scene.located(SceneError.of([Fault("output.derivatives", key, told)])) from None
+    if keys and estimators != {"expected"}:
+        told = 'are those of an expected law: batch.estimator = "expected"'
+        raise plan.scene.located(SceneError.of([Fault("output.derivatives", short_repr(keys), told)]))
 
 
 def _derivatives(cell: Cell, names: list[str], keys: list[str]) -> Floats:
     """Return the derivatives, and their errors, of variables at all steps and of the pull-off: [key, 2, number]."""
-    here, found = (
-        _law(cell, names, cell.scene),
-        np.empty((len(keys), 2, len(names) * cell.steps + len(PULL_OFF_NUMBERS))),
-    )
-    for (first, fourth), key in zip(found, keys, strict=True):
-        far, near, beyond, further = (_law(cell, names, _varied(cell, key, side)) for side in _SIDES)
-        step = _STEP * _number(cell, key)[2]
-        first[:] = (8.0 * (beyond - near) - (further - far)) / (12.0 * step)
-        fourth[:] = _OF_FOURTH * np.abs((far + further) - 4.0 * (near + beyond) + 6.0 * here) / step
-    return found
+    here, found = _law(cell, names, cell.scene), list[list[Floats]]()
+    for key in keys:
+        number = _number(cell, key)
+        far, near, beyond, further = (_law(cell, names, _varied(cell, key, number, side)) for side in _SIDES)
+        first = (8.0 * (beyond - near) - (further - far)) / 12.0
+        fourth = (far + further) - 4.0 * (near + beyond) + 6.0 * here
+        found.append([each / (_STEP * number.scale) for each in (first, _OF_FOURTH * np.abs(fourth))])
+    return np.array(found)
 
 
 def _law(cell: Cell, names: list[str], scene: Scene) -> Floats:
@@ -90,19 +116,15 @@ def _law(cell: Cell, names: list[str], scene: Scene) -> Floats:
     return np.concatenate([*(law.variables[name] for name in names), law.pull_off])
 
 
-def _varied(cell: Cell, key: str, side: float) -> Scene:
+def _varied(cell: Cell, key: str, number: _Number, side: float) -> Scene:
     """Return the scene of a cell with a number changed by so many steps; SceneError where it does not allow that."""
     table = parse_toml(cell.scene.toml)
-    try:
-        value, _, scale = _number(cell, key)
-        set_key(table, key, value + side * _STEP * scale)
-        return read(table)
-    except RoughmdrError as error:
-        raise SceneError.of([Fault("output.derivatives", key, str(error))]) from None
+    set_key(table, key, number.value + side * _STEP * number.scale)
+    return read(table)
 
 
-def _number(cell: Cell, key: str) -> tuple[float, str, float]:
-    """Return the value of a number, its unit, and the scale on which it is changed; RoughmdrError for no number.
+def _number(cell: Cell, key: str) -> _Number:
+    """Return a number of the scene of a cell; RoughmdrError where the key holds none that can be changed.
 
     A length that may be negative, such as a height, is changed on the scale of the heights, or of the indentation.
     """
@@ -113,12 +135,13 @@ def _number(cell: Cell, key: str) -> tuple[float, str, float]:
         if name.partition(".")[0] in SECTIONS or name == _MACHINE
     }
     reader, value = number_at(key, readers, table)
+    unit, scale = reader.dimension, abs(value) or 1.0
     if must_be_positive(reader, value):
-        return value, reader.dimension, value
-    if reader.dimension != "m":
-        return value, reader.dimension, abs(value) or 1.0
-    if 0.0 < source.sigma < np.inf:
-        return value, reader.dimension, source.sigma
-    highest = source.extremes(1e-3)
-    depth = float(highest.height.max()) - float(cell.path.separation.min())
-    return value, reader.dimension, depth if depth > 0.0 else float(highest.columns.rise.max())
+        if value == 0.0:
+            raise RoughmdrError("is 0, the end of what is allowed; set it above 0")
+    elif unit == "m":
+        highest = source.extremes(1e-3)
+        depth = float(highest.height.max()) - float(cell.path.separation.min())
+        scale = depth if depth > 0.0 else float(highest.columns.rise.max())
+        scale = source.sigma if 0.0 < source.sigma < np.inf else scale
+    return _Number(value, unit, scale)

@@ -54,6 +54,8 @@ def summary_lines(result: ResultView, elapsed: float | None = None) -> Iterator[
         time = f"{format_seconds(elapsed)}; {time}, over all workers"
     yield "computed", f"{printable(attrs['title'])}: {counted(result.sweep, realizations, steps)}"
     yield "variables", ", ".join(result.curves)
+    if "parameter" in result.coordinates:
+        yield "derivatives", f"by {', '.join(result.coordinates['parameter'].values)}"
     yield from under("path", attrs.get("path", "").splitlines())
     yield from motion_lines(result.coordinates)
     yield from under("lattice", attrs.get("lattice", "").splitlines())

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from roughmdr.asperity.validity import ValidityLimits
 from roughmdr.batch.collect import CollectedResults
-from roughmdr.batch.derivatives import derivatives_of
+from roughmdr.batch.derivatives import Derivatives
 from roughmdr.batch.plan import Plan
 from roughmdr.batch.resume.keys import versions
 from roughmdr.batch.rounds import CellMethod
@@ -96,12 +96,13 @@ def assemble(
         data["accuracy_reached"] = of_cells("accuracy_reached", errors)
         data["accuracy_method"] = of_cells("accuracy_method", [ESTIMATORS.index(each.estimator) for each in methods])
         warnings += more
+    if scene.output.derivatives:
+        found = Derivatives.of(plan)
+        data |= found.variables
+        coordinates |= found.coordinates
+        warnings += found.warnings
     if warnings:
         result.attrs["warnings"] = "\n".join(warnings)
-    if scene.output.derivatives:
-        found, numbers = derivatives_of(plan)
-        data |= found
-        coordinates |= numbers
     if plan.control in FORCES:
         data |= errors_along(ResultView(result))
     return result._replace(attrs={**result.attrs, "checksum": result.checksum()})

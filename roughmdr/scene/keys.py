@@ -44,17 +44,19 @@ def set_key(table: dict[str, Any], key: str, value: object) -> None:
     table[last] = value
 
 
-def number_at(key: str, readers: dict[str, Reader], table: dict[str, Any]) -> tuple[Reader, float]:
+def number_at(
+    key: str, readers: dict[str, Reader], table: dict[str, Any], others: tuple[str, ...] = ()
+) -> tuple[Reader, float]:
     """Return the reader and the value [SI] of a key that holds one number of a scene, not a whole one; RoughmdrError,
-    with what is expected, where it does not.
+    with what is expected, where it does not: a key, or one of ``others``.
     """
     reader = readers.get(key)
     if reader is None or not reader.dimension:
         numeric = sorted(name for name, each in readers.items() if each.dimension and entry_at(name, table) is not None)
-        raise RoughmdrError(f"is no number of the scene{suggestion(key, numeric)}")
+        raise RoughmdrError(f"is no number of the scene that can be varied{suggestion(key, [*numeric, *others])}")
     entry = entry_at(key, table)
     if entry is None:
-        raise RoughmdrError("is not in the scene; give it there")
+        raise RoughmdrError("is not in the scene; give it there, with a value")
     if isinstance(reader, WholeNumber):
         raise RoughmdrError("takes whole numbers only, which cannot be varied")
     if isinstance(entry, dict | list):
