@@ -4,12 +4,15 @@ import csv
 import os
 import re
 from collections.abc import Iterator
+from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from roughmdr.errors import RoughmdrError, StoreError
+from roughmdr.fitting.formats import read_instrument, read_text
 from roughmdr.schema.wording import short_repr
 from roughmdr.storage.files import check_regular_file, is_open_pipe
+from roughmdr.storage.result_file import FIT
 from roughmdr.variables import MEASURED
 
 if TYPE_CHECKING:
@@ -20,6 +23,7 @@ _UNIT = r"\[[^\]]*\]|\([^)]*\)|/\s*\S+"
 _HEADER = re.compile(rf"\s*([^\[\](/]*?)\s*({_UNIT})?\s*")
 _SPACED_HEADER = re.compile(rf"[^\s\[(/]+(?:\s*(?:{_UNIT}))?")
 _DECIMAL_COMMA = re.compile(r"([-+]?\d*),(\d+(?:e[-+]?\d+)?)", re.IGNORECASE)
+_CONTROL = re.compile("separation|remote|piezo", re.IGNORECASE)
 _MAX_BYTES = 2**28
 
 
@@ -34,6 +38,10 @@ class Columns(NamedTuple):
     rows: list[tuple[str, list[object]]]
     """Position of each row, in words for messages, and its entries."""
     file: Path | None = None
+    stiffness: float | None = None
+    """Spring constant that the file tells [N/m]."""
+    about: str = ""
+    """The format that was found, and what was taken from it, in words."""
 
 
 def read_columns(measured: "str | Path | pd.DataFrame | xr.Dataset") -> Columns:
@@ -48,7 +56,20 @@ def read_columns(measured: "str | Path | pd.DataFrame | xr.Dataset") -> Columns:
 
 
 def _of_text(path: Path) -> Columns:
-    lines = list(_lines(path))
+    content = _content(path)
+    text = _decoded(content)
+    is_text = "\0" not in text
+    lines = list(_lines(text)) if is_text else []
+    try:
+        curve = read_text(text) if is_text else read_instrument(path)
+    except RoughmdrError as error:
+        raise StoreError(f"{path}: {error}") from None
+    if curve is None and lines and not _CONTROL.search(lines[0][1]):
+        with suppress(RoughmdrError):  # text of an instrument that afmformats alone knows, where it is installed
+            curve = read_instrument(path)
+    if curve is not None:
+        control, rows, stiffness, about = curve
+        return Columns(str(path), [control, "force"], ["", ""], rows, path, stiffness, about)
     if not lines:
         raise StoreError(f"{path}: is empty; expected a line with the names of the columns, and rows")
     _, header = lines[0]
@@ -73,28 +94,39 @@ def _of_text(path: Path) -> Columns:
     return _titled(str(path), titles, rows)._replace(file=path)
 
 
+def _decoded(content: bytes) -> str:
+    """Return text in UTF-8, in UTF-16 as spreadsheets write it, or in Western European letters."""
+    if content.startswith((b"\xff\xfe", b"\xfe\xff")):
+        return content.decode("utf-16", errors="replace")
+    try:
+        return content.decode("utf-8-sig")
+    except UnicodeDecodeError:
+        return content.decode("cp1252", errors="replace")
+
+
 def _with_point(entry: str) -> str:
     """Return a number with a decimal point in place of a comma; any other entry stays as it is."""
     match = _DECIMAL_COMMA.fullmatch(entry)
     return f"{match[1]}.{match[2]}" if match else entry
 
 
-def _lines(path: Path) -> Iterator[tuple[int, str]]:
-    """Yield the lines of a file that are neither empty nor comments, with their numbers."""
+def _content(path: Path) -> bytes:
     try:
         if not is_open_pipe(path):
             check_regular_file(path)
         with path.open("rb") as file:
             content = file.read(_MAX_BYTES + 1)
-        text = content.decode("utf-8-sig")
     except OSError as error:
         raise StoreError(f"{path}: cannot be read: {error.strerror}") from None
-    except UnicodeDecodeError:
-        raise StoreError(f"{path}: not a text file; a measured curve is CSV in UTF-8") from None
     except RoughmdrError as error:
         raise StoreError(f"{path}: {error}") from None
     if len(content) > _MAX_BYTES:
         raise StoreError(f"{path}: is longer than {_MAX_BYTES} bytes, the most that a measured curve can have")
+    return content
+
+
+def _lines(text: str) -> Iterator[tuple[int, str]]:
+    """Yield the lines that are neither empty nor comments, with their numbers."""
     for number, line in enumerate(text.splitlines(), start=1):
         kept = line.partition("#")[0]
         if kept.strip():
@@ -114,7 +146,9 @@ def _of_dataset(dataset: Any) -> Columns:
             raise StoreError(f"measured: {name} has the dimensions {array.dims}; all must have the same one alone")
     values = zip(*(array.to_numpy().tolist() for array in found.values()), strict=True)
     rows = [(f"row {number}", list(row)) for number, row in enumerate(values)]
-    return Columns("measured", list(found), [str(each.attrs.get("units", "")) for each in found.values()], rows)
+    units = [str(each.attrs.get("units", "")) for each in found.values()]
+    stiffness = dataset.get("spring_constant") if dataset.attrs.get("kind") == FIT else None
+    return Columns("measured", list(found), units, rows, stiffness=None if stiffness is None else float(stiffness))
 
 
 def _titled(origin: str, titles: list[str], rows: list[tuple[str, list[object]]]) -> Columns:

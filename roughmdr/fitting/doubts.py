@@ -8,17 +8,20 @@ import numpy as np
 from roughmdr.errors import RoughmdrError
 from roughmdr.fitting.model import Model
 from roughmdr.fitting.parameters import Parameter
-from roughmdr.fitting.residuals import is_above_noise, is_systematic, relative_rms
+from roughmdr.fitting.residuals import is_above_noise, is_systematic, noise_of, relative_rms
 from roughmdr.fitting.search import Found, search
-from roughmdr.fitting.uncertainty import Uncertainty, correlation_of
+from roughmdr.fitting.uncertainty import Uncertainty, apart_from_the_rest, correlation_of
 from roughmdr.numerics.arguments import Floats
 from roughmdr.schema.units import format_quantity
 
 _ALIKE, _SAME = 0.99, 0.9999  # correlations of parameters that the curve hardly tells apart, and does not
 _SHARED = 0.05  # product of the weights of two parameters in weak directions from which they count as joined
 _WIDE = math.log(2.0)  # half a 95 % interval of x that is very wide: a factor of two, or as much of the scale
-_AT_BOUND = 1e-3
 _BETTER = 25.0  # decrease of the sum of squares over the variance of the noise: five standard deviations
+_BAND, _FLAT = 6.0, 1e-3  # height of a flat top, over the noise, and at least over the range of the load
+_ROWS, _LONGER = 10, 4.0  # most points of a sharp top or of no dwell; points of a flat top over those of the next band
+_DWELL = 0.1  # share of points in a dwell
+_CHANCE = 1e-3  # probability that the distance of a prior, or of other curves, is larger by chance
 _FAR_OFF = 2.0  # root mean square of deviations over their stated errors
 
 
@@ -32,38 +35,77 @@ def doubts(model: Model, found: Found, known: Uncertainty) -> Iterator[str]:
     for i, parameter in enumerate(parameters):
         if width[i] > _WIDE and not any(i in group for group in groups):
             yield f"the curve hardly determines {parameter.key}: its 95 % interval is very wide"
-        if min(found.x[i] - parameter.bounds[0], parameter.bounds[1] - found.x[i]) < _AT_BOUND:
-            yield f"{parameter.key} ended at the bound of what is allowed, {parameter.value(float(found.x[i])):g}"
+        if bound := parameter.bound_met(float(found.x[i])):
+            yield bound
     if not found.converged:
         yield "the search ended before it converged"
-    if is_systematic(found.deviations):
+    if is_systematic(found.residuals) and not known.noise.rho:
         rms = 100.0 * relative_rms(model.curve, found.deviations)
         yield (
             f"the residuals are systematic ({rms:.2g} % r.m.s.): the scene does not describe the curve, and the "
             "intervals mean little"
         )
-    yield from _backwards(model, found)
-    size = float(np.sqrt(np.mean(np.square(found.deviations))))
+    yield from _of_the_curve(model, found)
+    yield from _backwards(model, found, known)
+    yield from _at_odds(model, found, known)
+    size = float(np.sqrt(np.mean(np.square(found.residuals))))
     if model.curve.error is not None and size > _FAR_OFF:
         yield f"the residuals are {size:.2g} times the stated errors of the {model.curve.quantity}"
 
 
-def _backwards(model: Model, found: Found) -> Iterator[str]:
+def _of_the_curve(model: Model, found: Found) -> Iterator[str]:
+    """Yield doubts about the measurement itself: no contact, a detector at its end, a dwell."""
+    curve, name, steps = model.curve, model.curve.quantity, np.diff(model.curve.values)
+    sums = [float(np.sum(np.square(each))) for each in ((curve.load - curve.level) / curve.weight, found.residuals)]
+    noise = 1.0 if curve.error is not None else sums[1] / curve.load.size
+    if sums[0] - sums[1] < _BETTER * noise and not is_above_noise(curve, found.deviations):
+        yield f"the {name} is noise along the whole curve, which shows no contact"
+    band = max(_BAND * noise_of(curve), _FLAT * float(np.ptp(curve.load)))
+    top, next_to_it = (np.sum(np.floor((curve.load.max() - curve.load) / band) == i) for i in (0, 1))
+    if top > max(_ROWS, _LONGER * next_to_it) and np.ptp(curve.load) > _LONGER * band:
+        most = format_quantity(float(curve.load.max()), curve.unit)
+        yield f"the {name} stays at its largest, {most}, over {top} points: a detector at its end? leave these out"
+    still = int(np.diff(np.flatnonzero(np.concatenate([[1.0], steps, [1.0]]))).max())
+    if still > max(_ROWS, _DWELL * steps.size):
+        yield f"the {curve.control} stays the same over {still} points: contacts can creep in a dwell; leave these out"
+
+
+def _backwards(model: Model, found: Found, known: Uncertainty) -> Iterator[str]:
     """Yield a doubt where an adhesive law, which depends on the sense of motion, fits the curve better from its end."""
     if not (model.adheres and is_above_noise(model.curve, found.deviations)):
         return
-    other = model.backwards()
+    other = model.along(model.curve.backwards())
+    other.told, other.spread, other.noise = model.told, model.spread, model.noise
     try:
-        deviations = search(other).deviations
+        deviations = search(other).residuals
     except RoughmdrError:
         return
-    here, there = (float(np.mean(np.square(each))) for each in (found.deviations, deviations))
-    if (here - there) * deviations.size > _BETTER * (there if model.curve.error is None else 1.0):
+    here, there = (float(np.mean(np.square(each))) for each in (found.residuals, deviations))
+    points = known.noise.effective(deviations.size)
+    if (here - there) * points > _BETTER * (there if model.curve.error is None else 1.0):
         sizes = [100.0 * relative_rms(model.curve, found.deviations), 100.0 * relative_rms(other.curve, deviations)]
         yield (
             f"read from its last row to its first the curve is fitted better, to {sizes[1]:.2g} % r.m.s. in place of "
             f"{sizes[0]:.2g} %: rows must be in the order of measurement, for adhesion tells loading from unloading"
         )
+
+
+def _at_odds(model: Model, found: Found, known: Uncertainty) -> Iterator[str]:
+    """Yield each prior, and the other curves of a joint fit, where all the rest tells something else."""
+    from scipy.stats import chi2
+
+    (matrix, best), points = model.told, found.points
+    claims = [f"the prior of {each.key}" for each in model.parameters if each.prior is not None]
+    rows = [np.array([points + i]) for i in range(len(claims))]
+    if best.size:
+        shared = [each.key for each, column in zip(model.parameters, matrix.T, strict=True) if column.any()]
+        claims.append(f"what the other curves tell of {', '.join(shared)}")
+        rows.append(np.arange(points + len(rows), found.deviations.size))
+    for claim, each in zip(claims, rows, strict=True):
+        apart, covariance = apart_from_the_rest(model, found, known.noise, each)
+        square = float(apart @ np.linalg.pinv(covariance, hermitian=True) @ apart)
+        if square > chi2.isf(_CHANCE, apart.size):
+            yield f"{claim} is about {math.sqrt(square):.0f} standard errors from what this curve tells"
 
 
 def _alike(slopes: Floats) -> list[list[int]]:

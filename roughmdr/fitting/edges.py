@@ -25,15 +25,17 @@ class Edges(NamedTuple):
     """[edge, parameter]"""
     ends: Floats
     """[edge], at least 0."""
+    certain: bool = True
+    """Whether there is an edge wherever a jump could pass a measured step."""
 
 
 def certain_edges(model: Model, found: Found) -> Edges:
     """Return the edges of the interval between jumps beyond which the law misses a load by much more than the noise."""
-    here, edges = model.point(found.x), list[tuple[Floats, float]]()
+    here, edges, certain = model.point(found.x), list[tuple[Floats, float]](), True
     jumps = jumps_at(model, found.x) if model.jumps else None
     left = np.linalg.svd(found.slopes, full_matrices=False)[0]
     least = float(np.sum(np.square(found.deviations)))
-    noise = least / found.deviations.size if model.curve.error is None else 1.0
+    noise = float(np.mean(np.square(found.residuals))) if model.curve.error is None else 1.0
     if jumps is not None:
         places, slopes = places_of(model, here.jumps, jumps)
         ends = np.stack([places, 1.0 - places])
@@ -43,8 +45,10 @@ def certain_edges(model: Model, found: Found) -> Edges:
             beyond = nearest_in(model, here, tuple(next_one.tolist()), jumps)
             if beyond is not None and _least_by(left, beyond.deviations) - least > _CERTAIN * noise:
                 edges.append((sign * slopes[jump], end))
+            elif beyond is not None:
+                certain = False
     sides = np.array([side for side, _ in edges]).reshape(-1, found.x.size)
-    return Edges(sides, np.array([end for _, end in edges]))
+    return Edges(sides, np.array([end for _, end in edges]), certain)
 
 
 def _least_by(left: Floats, deviations: Floats) -> float:
@@ -61,6 +65,6 @@ def farthest(direction: Floats, radius: float, edges: Edges) -> float:
     high = _LARGEST * low
     for _ in range(_BISECTIONS):
         middle = float(np.sqrt(low * high))
-        nearest = projected(middle * direction, *edges)
+        nearest = projected(middle * direction, edges.sides, edges.ends)
         low, high = (low, middle) if np.linalg.norm(nearest) > radius else (middle, high)
-    return float(direction @ projected(low * direction, *edges))
+    return float(direction @ projected(low * direction, edges.sides, edges.ends))

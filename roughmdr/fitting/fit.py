@@ -1,20 +1,23 @@
 """Fit parameters of a scene to a measured curve."""
 
-import time
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from roughmdr.errors import StoreError, warn_limits
-from roughmdr.fitting.measured import read_measured
-from roughmdr.fitting.model import Model, scene_to_fit
-from roughmdr.fitting.result import assemble
-from roughmdr.fitting.search import search
+from roughmdr.errors import SceneError, StoreError, warn_limits
+from roughmdr.fitting.compare import RANGES, best_model
+from roughmdr.fitting.curves import assembled, first_of, fit_each, fit_one, taken_apart
+from roughmdr.fitting.fitted_scene import scene_to_fit
+from roughmdr.fitting.model import Model
+from roughmdr.fitting.parameters import Known
 from roughmdr.fitting.stored import read_fit
-from roughmdr.fitting.uncertainty import uncertainty
-from roughmdr.fitting.words import parameter_keys
+from roughmdr.fitting.words import curve_names, parameter_keys
+from roughmdr.runner.backend import Backend
 from roughmdr.scene import Scene
-from roughmdr.schema.keywords import named_keywords
+from roughmdr.schema.keywords import with_options
+from roughmdr.schema.wording import short_repr
 from roughmdr.storage.files import NETCDF_ENDINGS, check_ending, check_writable
 from roughmdr.storage.labelled import Labelled
 from roughmdr.storage.netcdf_writing import write_netcdf
@@ -24,46 +27,74 @@ if TYPE_CHECKING:
     import pandas as pd
     import xarray as xr
 
+_NAMED = 5  # most parameters or curves that a message names
 
-@named_keywords
+
+@dataclass(frozen=True)
+class FitOptions:
+    """Options of ``fit``, which describes them."""
+
+    model: str | None = None
+    bounds: Mapping[str, Any] = field(default_factory=dict)
+    priors: Mapping[str, Any] = field(default_factory=dict)
+    shared: str | Iterable[str] = ()
+    workers: int = 1
+    quiet: bool = True
+
+
+@with_options(FitOptions)
 def fit(
-    measured: "str | Path | pd.DataFrame | xr.Dataset",
+    measured: "str | Path | pd.DataFrame | xr.Dataset | Mapping[str, Any] | list[Any]",
     scene: str | Path | dict[str, Any] | Scene,
     free: str | Iterable[str],
     out: str | Path | None = None,
     *,
     set: dict[str, Any] | None = None,  # noqa: A002 - as --set
     fresh: bool = False,
+    **options: Any,
 ) -> "xr.Dataset":
-    """Fit parameters of a scene to a measured curve, by least squares with the expected law of the scene.
+    """Fit parameters of a scene to a measured curve or to many, by least squares with the expected law of the scene.
 
     A LimitWarning says which parameters the curve does not tell apart, and where the scene does not describe it.
 
     Parameters
     ----------
-    measured : path, pandas.DataFrame or xarray.Dataset
+    measured : path, pandas.DataFrame, xarray.Dataset, dict or list
         Columns ``separation``, ``remote`` of a machine's spring, or ``piezo`` that moves a cantilever to the surface
         (``remote`` is minus that), and ``force`` or ``pressure``, in the order of the measurement; ``force_error`` is
         the standard deviation of each force. Units stand in the names, as in "force [mN]"; without, they are SI. A
-        Dataset has its own.
+        Dataset has its own. Or a force curve as an AFM program exports it, whose spring constant is that of the machine
+        where the scene has none. Many curves: a column ``curve`` with the name of each, a Dataset over ``curve`` with
+        NaN after the last point of each, a dict of curves by their names, or a list of paths.
     scene : path, dict or Scene
         Gives all else; its values are where the search starts. The measured path takes the place of its own.
     free : str or iterable of str
         Keys of the scene to fit, such as "adhesion.work"; and "offset", the separation [m] (or position of the far end)
-        in the scene where the measurement reads 0.
+        in the scene where the measurement reads 0; "baseline", the load that it reads at its first row without contact,
+        and "baseline_slope", the change of that per metre of the separation or the far end.
     out : path, optional
         The netCDF file to write.
     set : dict, optional
         Keys of the scene, dotted, with the values that they get.
     fresh : bool, optional
-        Whether to replace a file of any kind at ``out``; otherwise only a fit of no other parameters.
+        Whether to replace a file of any kind at ``out``; otherwise only a fit of no other parameters and curves.
+    **options
+        ``model = "auto"`` has the curve choose the adhesion model: none, "jkr" or "dugdale", by the corrected Akaike
+        criterion. ``bounds``, lowest and highest value, and ``priors``, mean and standard deviation of what is known
+        otherwise, as if measured, are pairs by free keys, such as ``{"adhesion.work": ("50 mJ/m^2", "10 mJ/m^2")}``. Of
+        many curves: ``shared``, the free keys that have one value for all, whose errors are those of the joint fit;
+        ``workers``, the number of processes, 1 for this one alone unless given; the numbers are the same for any.
+        ``quiet = False`` shows the progress.
 
     Returns
     -------
     xarray.Dataset
         Each parameter, dots as underscores, with ``_standard_error``, ``_low`` and ``_high`` (95 %), and
         ``_model_error``, its shift by the error of the law where that is known; ``covariance`` and ``correlation``; the
-        fitted law and the residual over ``point``. The attribute ``scene`` is the fitted scene.
+        fitted law and the residual over ``point``. The attribute ``scene`` is the fitted scene. With ``model``,
+        ``aicc``, ``akaike_weight``, ``tabor_parameter`` and ``model_residual_rms`` over the dimension ``model``. Of
+        many curves all have the dimension ``curve``, and ``scene`` is that of the start; ``failure`` says why a curve
+        could not be fitted, and ``remark`` has the doubts about each.
 
     Raises
     ------
@@ -72,7 +103,7 @@ def fit(
     StoreError
         Where the measurement cannot be read, or ``out`` cannot be written or must not be replaced.
     OutOfRange
-        Where no start of the search has a law.
+        Where no start of the search has a law, of many curves for none of them.
 
     References
     ----------
@@ -98,8 +129,8 @@ def fit(
     >>> print(f"{float(fitted.material_effective_modulus):.4g} {fitted.material_effective_modulus.units}")
     2e+09 Pa
     """
-    target, keys = None if out is None else Path(out), [free] if isinstance(free, str) else list(free)
-    result = fit_labelled(measured, scene, keys, target, changes=set or {}, fresh=fresh)
+    target = None if out is None else Path(out)
+    result = fit_labelled(measured, scene, free, target, FitOptions(**options), changes=set or {}, fresh=fresh)
     warn_limits(result.attrs.get("warnings", "").splitlines())
     return result.to_xarray()
 
@@ -107,35 +138,75 @@ def fit(
 def fit_labelled(
     measured: Any,
     scene: Any,
-    free: list[str],
+    free: str | Iterable[str],
     out: Path | None,
+    options: FitOptions = FitOptions(),
     *,
     changes: Any,
     fresh: bool,
     command: str = "roughmdr.fit",
 ) -> Labelled:
     """Return the result of a fit, written to ``out`` unless that is None; arguments and errors as ``fit``."""
-    started = time.perf_counter()
-    curve = read_measured(measured, len(free))
-    validated = scene_to_fit(scene, changes, curve, free)
+    free, shared = _keys("free", free), _keys("shared", options.shared)
+    found = taken_apart(measured)
+    curves = found if isinstance(found, dict) else {}
+    curve = first_of(curves or {"": found}, len(free))
+    validated, curve = scene_to_fit(scene, changes, curve, free)
+    _check(options, free, shared, validated, several=bool(curves))
+    auto, known = options.model == "auto", Known(options.bounds, options.priors)
     if out is not None:
-        check_writable(out, [*validated.inputs, *([] if curve.file is None else [curve.file])])
+        files = [Path(each) for each in (measured, *curves.values()) if isinstance(each, str | PathLike)]
+        check_writable(out, [*validated.inputs, *files])
         check_ending(out, "fit", NETCDF_ENDINGS)
         if not fresh:
             check_same_kind(out, FIT)
-            _check_nothing_lost(out, free)
-    model = Model(validated, curve, free)
-    found = search(model)
-    result = assemble(model, found, uncertainty(model, found), time.perf_counter() - started, command)
+            _check_nothing_lost(out, [*free, *curves, *(RANGES if auto else ())])
+    if auto:
+        result = assembled(best_model(validated, curve, free, known), command)
+    elif curves:
+        model, workers, quiet = Model(validated, curve, free, known), options.workers, options.quiet
+        result = fit_each(curves, model, command, shared=shared, workers=workers, quiet=quiet)
+    else:
+        result = fit_one(Model(validated, curve, free, known), command)
     if out is not None:
         write_netcdf(result, out)
     return result
 
 
-def _check_nothing_lost(out: Path, free: list[str]) -> None:
-    """Raise StoreError where there is a fit of parameters that are not fitted now."""
+def _keys(name: str, given: Any) -> list[str]:
+    """Return keys that are given as one or several; SceneError where they are none."""
+    keys = [given] if isinstance(given, str) or not isinstance(given, Iterable) else list(given)
+    if not all(isinstance(key, str) for key in keys):
+        raise SceneError(f"{name} is {short_repr(given)}; it must be a key of the scene, or several")
+    return keys
+
+
+def _check(options: FitOptions, free: list[str], shared: list[str], scene: Scene, *, several: bool) -> None:
+    """Raise RoughmdrError where options are not allowed, alone or beside each other."""
+    if options.model not in (None, "auto"):
+        raise SceneError(f"model is {options.model!r}; it must be 'auto' or None; set adhesion.model for another")
+    if options.model and several:
+        raise SceneError("model: 'auto' compares models of one curve; give one, or set adhesion.model")
+    if not free:
+        raise SceneError("free: names no key; expected some like adhesion.work, material.modulus")
+    for name, given in (("bounds", options.bounds), ("priors", options.priors)):
+        if not (isinstance(given, Mapping) and all(isinstance(key, str) for key in given)):
+            raise SceneError(f"{name} is {short_repr(given)}; it must be a dict with two numbers for each key")
+    wrong = [key for key in shared if key not in free or key in options.priors or not several]
+    if wrong:
+        raise SceneError(f"shared: {wrong[0]}: must be a free key, without a prior, of several curves")
+    if shared and scene.asperities.equal_heights and scene.work > 0.0:
+        told = "joint fits do not follow jumps, which asperities of one height make under adhesion"
+        raise SceneError(f"shared: {told}: fit the curves on their own, and take the mean over them")
+    Backend(workers=options.workers).check()
+
+
+def _check_nothing_lost(out: Path, kept: list[str]) -> None:
+    """Raise StoreError where there is a fit of parameters or curves that are not fitted now."""
     if not out.exists():
         return
-    lost = [key for key in parameter_keys(read_fit(out)) if key not in free]
+    old = read_fit(out)
+    lost = [name for name in [*parameter_keys(old), *curve_names(old)] if name not in kept]
     if lost:
-        raise StoreError(f"{out}: holds a fit of {', '.join(lost)} too: give another output, or --fresh to replace it")
+        named = ", ".join(lost[:_NAMED]) + f" and {len(lost) - _NAMED} more" * (len(lost) > _NAMED)
+        raise StoreError(f"{out}: holds a fit of {named} too: give another output, or --fresh to replace it")

@@ -169,6 +169,8 @@ def _least(model: Model, point: Point) -> Point:
 def _improved(model: Model, point: Point) -> Point | None:
     """Return a better point of the same interval, by linearisation; None where there is none."""
     left, sizes, right = np.linalg.svd(slopes_of(model, point.x), full_matrices=False)
+    if not sizes[0] > 0.0:  # no contact along the path
+        return None
     axes, goal = right.T / np.maximum(sizes, _FLAT * sizes[0]), -left.T @ point.deviations
     low, high = model.bounds
     sides, ends = [np.eye(point.x.size), -np.eye(point.x.size)], [high - point.x, point.x - low]

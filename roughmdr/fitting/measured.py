@@ -8,7 +8,7 @@ import numpy as np
 from roughmdr.errors import RoughmdrError, StoreError
 from roughmdr.fitting.columns import Columns, read_columns
 from roughmdr.numerics.arguments import Floats
-from roughmdr.schema.units import quantity, unit_factor
+from roughmdr.schema.units import format_quantity, quantity, unit_factor
 from roughmdr.schema.wording import printable, short_repr, suggestion
 from roughmdr.variables import MEASURED
 
@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     import pandas as pd
     import xarray as xr
 
+_TURNS, _LONG_STEP = 1.0 / 3.0, 0.1  # share of turns and mean step over the range of mixed rows: 2/3, 1/3 by chance
 _CONTROLS, _LOADS = ("separation", "remote", "piezo"), ("force", "pressure")
 
 
@@ -35,6 +36,22 @@ class MeasuredCurve(NamedTuple):
     origin: str
     """The file or argument it is from."""
     file: Path | None
+    stiffness: float | None = None
+    """Spring constant of the cantilever that the file tells [N/m]."""
+    about: str = ""
+    """The format of the file and what was taken from it, in words."""
+    level: Floats | float = 0.0
+    """The load without contact [N or Pa]: a guess before the search, the baseline after it; 0 unless that is fitted."""
+
+    @property
+    def far(self) -> float:
+        """The median of the load in the tenth of the rows that is farthest from contact."""
+        return float(np.median(self.load[self.values >= np.quantile(self.values, 0.9)]))
+
+    @property
+    def largest(self) -> float:
+        """The largest load, in size, over that without contact."""
+        return float(np.abs(self.load - self.level).max())
 
     @property
     def unit(self) -> str:
@@ -46,18 +63,24 @@ class MeasuredCurve(NamedTuple):
         """The divisor of deviations: the error of each load, or the largest load."""
         return np.full_like(self.load, np.abs(self.load).max()) if self.error is None else self.error
 
+    def is_mixed(self) -> bool:
+        """Return whether the control goes to and fro from row to row, by much more than a sensor's noise."""
+        steps = np.diff(self.values)
+        turns = np.mean(steps[1:] * steps[:-1] < 0.0)
+        return bool(turns > _TURNS and np.abs(steps).mean() > _LONG_STEP * np.ptp(self.values))
+
     def backwards(self) -> "MeasuredCurve":
         """Return the curve row by row from its end."""
         error = None if self.error is None else self.error[::-1]
         return self._replace(values=self.values[::-1], load=self.load[::-1], error=error)
 
 
-def read_measured(measured: "str | Path | pd.DataFrame | xr.Dataset", parameters: int) -> MeasuredCurve:
+def read_measured(measured: "str | Path | pd.DataFrame | xr.Dataset | Columns", parameters: int) -> MeasuredCurve:
     """Return a measured curve that ``parameters`` numbers are fitted to; StoreError where it is wrong.
 
     The message names file, line, column, value and what is allowed.
     """
-    columns = read_columns(measured)
+    columns = measured if isinstance(measured, Columns) else read_columns(measured)
     given = _one_of(columns, _CONTROLS)
     load = _one_of(columns, _LOADS)
     _check_names(columns, (given, load, f"{load}_error"))
@@ -65,11 +88,14 @@ def read_measured(measured: "str | Path | pd.DataFrame | xr.Dataset", parameters
     least = parameters + 3
     if len(columns.rows) < least:
         raise StoreError(f"{columns.origin}: has {len(columns.rows)} rows; at least {least} are needed")
-    if not numbers[load].any():
-        raise StoreError(f"{columns.origin}: {load} is 0 in every row; a curve with contact is needed")
+    for name, wanted in ((load, "with contact"), (given, "along which it changes")):
+        if not np.ptp(numbers[name]):
+            same = format_quantity(numbers[name][0], MEASURED[name]) if numbers[name][0] else "0"
+            raise StoreError(f"{columns.origin}: {name} is {same} in every row; a curve {wanted} is needed")
     error = numbers.get(f"{load}_error")
     control, values = ("remote", -numbers[given]) if given == "piezo" else (given, numbers[given])
-    return MeasuredCurve(control, values, load, numbers[load], error, columns.origin, columns.file)
+    stiffness, about = columns.stiffness, columns.about
+    return MeasuredCurve(control, values, load, numbers[load], error, columns.origin, columns.file, stiffness, about)
 
 
 def _one_of(columns: Columns, names: tuple[str, ...]) -> str:

@@ -12,17 +12,17 @@ from roughmdr.aggregate import LoadingPath, LoadSeparation, Problem
 from roughmdr.aggregate.under_machine import separations_of
 from roughmdr.batch.realization import simulate_realization
 from roughmdr.batch.usual_path import machine_path
-from roughmdr.errors import OutOfRange, RoughmdrError, SceneError
+from roughmdr.errors import OutOfRange, RoughmdrError, SceneError, StoreError
 from roughmdr.expected import ForceRule, expected_force
+from roughmdr.fitting.correlation import correlation_of_noise
 from roughmdr.fitting.measured import MeasuredCurve
-from roughmdr.fitting.parameters import MACHINE, OFFSET, Parameter, free_parameters
+from roughmdr.fitting.parameters import MACHINE, OF_THE_CURVE, OFFSET, Known, Parameter, baselines, free_parameters
 from roughmdr.fitting.spring import Spring
 from roughmdr.loading.machine import MachinePath
 from roughmdr.numerics.arguments import Floats
 from roughmdr.scene import Scene, read
 from roughmdr.scene.keys import set_key
 from roughmdr.schema.toml_text import parse_toml
-from roughmdr.stages import stages_in
 
 
 class Load(NamedTuple):
@@ -54,23 +54,33 @@ class Point(NamedTuple):
     """The rule over shape parameters by which the law was found, where there is one."""
 
 
+_LEAST_NOISE = 1e-12  # least noise over the largest load: of a curve without any, that of rounding
 _NONE = Point(np.empty(0), np.empty(0), 0.0, (), np.empty(0))
 
 
 class Model:
     """The expected law at the measured steps as a function of x, one number for each free parameter."""
 
-    def __init__(self, scene: Scene, curve: MeasuredCurve, free: list[str]) -> None:
+    def __init__(self, scene: Scene, curve: MeasuredCurve, free: list[str], known: Known = Known()) -> None:
         if reason := scene.reason_against("expected"):
             raise SceneError(f"scene: cannot be fitted, for it has no expected law: {reason}")
         if curve.quantity == "pressure" and scene.nominal_area is None:
             raise SceneError(
                 f"{curve.origin}: pressure needs a nominal area in the scene: asperities.patch, and a flat"
             )
-        self._start, self._free = scene, free
+        if scene.work > 0.0 and curve.is_mixed():
+            raise StoreError(
+                f"{curve.origin}: {curve.control} goes to and fro from row to row; rows must be in the order of "
+                "measurement, on which adhesion depends"
+            )
+        self.seconds = 0.0
+        """Time that was spent on it."""
+        self.start, self._free, self._known = scene, free, known
         self._table = parse_toml(scene.toml)
-        self.curve = curve
-        self.parameters: list[Parameter] = free_parameters(free, scene, self._table, curve)
+        self.curve = curve._replace(level=curve.far) if any(key.startswith("baseline") for key in free) else curve
+        self.parameters: list[Parameter] = free_parameters(free, scene, self._table, self.curve, known)
+        self.baselines = baselines(self.parameters, self.curve)
+        """Load per x of each parameter without contact [step, parameter]."""
         self.bounds: tuple[Floats, Floats] = tuple(np.transpose([each.bounds for each in self.parameters]))
         self._is_plain = scene.interaction is None and not scene.unlike
         self.adheres = scene.work > 0.0
@@ -82,8 +92,15 @@ class Model:
         self.near: Spring | None = None
         """How the load on a machine changes near the last parameters whose slopes were found, where it does not jump.
         """
+        self.noise = 0.0 if curve.error is None else 1.0
+        """Standard deviation of the noise in units of the deviations; priors count from when it is known."""
+        count = len(self.parameters)
+        self.begin, self.told = np.zeros(count), (np.empty((0, count)), np.empty(0))
+        """Where the search begins, and what other curves tell: A x = b."""
+        self.spread = np.eye(sum(each.prior is not None for each in self.parameters))
+        """A square root of the covariance of what is known otherwise, by priors and by other curves."""
         self.evaluations = 0
-        self._last = _NONE
+        self._last, self._read = _NONE, (np.empty(0), scene)
         self.last_error: RoughmdrError = OutOfRange("the expected law is not finite")
 
     @property
@@ -91,13 +108,22 @@ class Model:
         """Whether the spring of a machine bears the load of the law, not one that is given."""
         return self.borne is None
 
-    def backwards(self) -> "Model":
-        """Return the model of the curve as if it had been measured from its end."""
-        return Model(self._start, self.curve.backwards(), self._free)
+    def along(self, curve: MeasuredCurve) -> "Model":
+        """Return the model of another curve, with its own spring constant where that of this curve is the machine's."""
+        start, own = self.start, self.curve.stiffness
+        if own is None:
+            curve = curve._replace(stiffness=None)
+        elif curve.stiffness is None:
+            raise StoreError(f"{curve.origin}: tells no spring constant, as the first does; set {MACHINE}")
+        elif curve.stiffness != own:
+            start = read(start, {MACHINE: curve.stiffness})
+        return Model(start, curve, self._free, self._known)
 
     def scene(self, x: Floats) -> Scene:
         """Return the scene with these parameters; SceneError where it does not allow them."""
-        return read(self._with(x))
+        if not np.array_equal(x, self._read[0]):
+            self._read = x.copy(), read(self._with(x))
+        return self._read[1]
 
     def fitted(self, x: Floats) -> Scene:
         """Return the scene with these parameters along the whole path, whose run is the fitted law."""
@@ -147,7 +173,8 @@ class Model:
         steps = values + self._offset(x)
         if self.curve.control == "remote" and self.exact:
             return machine_path(scene, steps)
-        stretch = 0.0 if self.borne is None else self.stretch(scene, self.borne)
+        borne = self.curve.load - self.baseline(x) if self.borne is self.curve.load else self.borne
+        stretch = 0.0 if borne is None else self.stretch(scene, borne)
         return LoadingPath.along(steps + stretch, unload=False, adhesive=scene.work > 0.0)
 
     @contextmanager
@@ -161,6 +188,27 @@ class Model:
         finally:
             self.borne, self._rule, self._last = before
 
+    def assume_noise_of(self, deviations: Floats, slopes: Floats) -> None:
+        """Take the noise of a curve from its deviations, so that priors count: its size where that is not stated, and
+        how much less it tells where it is correlated.
+        """
+        points = self.curve.load.size
+        deviations, left = deviations[:points], np.linalg.svd(slopes[:points], full_matrices=False)[0]
+        if self.curve.error is None:
+            freedom = max(points - len(self.parameters), 1)
+            self.noise = max(float(np.sqrt(np.sum(np.square(deviations)) / freedom)), _LEAST_NOISE)
+        self.noise *= (points / correlation_of_noise(left, deviations).effective(points)) ** 0.5
+        self._last = _NONE
+
+    def take(self, begin: Floats, at: list[int], told: tuple[Floats, Floats, Floats]) -> None:
+        """Take what other curves tell of the parameters ``at`` these places, and begin the next search elsewhere."""
+        matrix, best, spread = told
+        every, before = np.zeros((best.size, begin.size)), self.spread.shape[0] - self.told[1].size
+        every[:, at] = matrix
+        self.begin, self.told, self._last = begin, (every, best), _NONE
+        self.spread = np.eye(before + best.size)
+        self.spread[before:, before:] = spread
+
     def deviations(self, x: Floats) -> Floats:
         """Return law minus measurement, weighted; inf where the law cannot be computed, as ``last_error`` says."""
         return self.point(x).deviations
@@ -173,16 +221,24 @@ class Model:
 
     def point_at(self, x: Floats) -> Point:
         """Return likewise the law, which is not kept."""
-        nothing = Point(x, np.full(self.curve.load.size, np.inf), 0.0, (), np.empty(0))
+        nothing = Point(x, np.full(self.curve.load.size + len(self._from_priors(x)), np.inf), 0.0, (), np.empty(0))
         try:
             load, error, touching, rule = self.load(x, self.curve.values)
         except RoughmdrError as failure:
             self.last_error = failure
             return nothing
-        found = (load - self.curve.load) / self.curve.weight
+        measured = (load + self.baseline(x) - self.curve.load) / self.curve.weight
+        found = np.append(measured, self._from_priors(x))
         if not np.isfinite(found).all():
             return nothing
         return Point(x, found, error, tuple(changes_of(touching).tolist()), load, rule)
+
+    def _from_priors(self, x: Floats) -> Floats:
+        """Return the deviations from what is known of the parameters otherwise, as if it had been measured."""
+        pairs = zip(self.parameters, x.tolist(), strict=True)
+        known = [(p.value(each) - p.prior[0]) / p.prior[1] for p, each in pairs if p.prior is not None]
+        matrix, best = self.told
+        return self.noise * np.append(known, matrix @ x - best)
 
     def stretch(self, scene: Scene, load: Floats) -> Floats:
         """Return the stretch of the machine's spring by a load [m]."""
@@ -192,6 +248,10 @@ class Model:
         """Return the force over the load: the nominal area [m2] of a pressure."""
         return 1.0 if self.curve.quantity == "force" else scene.nominal_area or np.nan
 
+    def baseline(self, x: Floats) -> Floats:
+        """Return what the measurement reads without contact at each step [N or Pa]."""
+        return np.asarray(self.baselines @ x)
+
     def _offset(self, x: Floats) -> float:
         """Return the offset that is added to the measured control [m]."""
         zero = (p.value(float(number)) for p, number in zip(self.parameters, x, strict=True) if p.key == OFFSET)
@@ -200,7 +260,7 @@ class Model:
     def _with(self, x: Floats) -> dict[str, Any]:
         table = copy.deepcopy(self._table)
         for parameter, number in zip(self.parameters, x, strict=True):
-            if parameter.key != OFFSET:
+            if parameter.key not in OF_THE_CURVE:
                 set_key(table, parameter.key, parameter.value(float(number)))
         return table
 
@@ -216,41 +276,3 @@ def path_under_machine(scene: Scene, path: MachinePath) -> LoadingPath:
     problem = Problem(scene.asperities.ensemble(0, 0), scene.effective_modulus, scene.adhesion_model)
     separation, _ = separations_of(problem, path.machine, path.demand)
     return LoadingPath.along(separation, unload=False, adhesive=path.adhesive)
-
-
-def scene_to_fit(source: Any, changes: Any, curve: MeasuredCurve, free: list[str]) -> Scene:
-    """Return the scene of a curve: the path begins as measured, and nothing is swept; SceneError where it is wrong.
-
-    A free key that is swept has its first value.
-    """
-
-    def amend(table: dict[str, Any]) -> None:
-        path, sweep = table.get("path"), table.pop("sweep", {})
-        steps: dict[str, Any] = {curve.control: [float(curve.values[0])]}
-        if curve.control == "remote" and isinstance(path, dict) and "machine_stiffness" in path:
-            steps["machine_stiffness"] = path["machine_stiffness"]
-        table["path"] = steps
-        for section in ("batch", "accuracy"):
-            table.pop(section, None)
-        if not all(stage.flat for stage in stages_in(table)):  # else there is no law but the expected one
-            table["batch"] = {"estimator": "expected"}
-        for key, entries in sweep.items() if isinstance(sweep, dict) else ():
-            if key in free:
-                _set_first(table, key, entries)
-            elif key != "mode" and (key == MACHINE or not key.startswith("path.")):
-                raise SceneError(
-                    f"sweep.{key}: a curve is of one scene; free the key, or fix it with --set {key}=VALUE"
-                )
-
-    return read(source, changes, amend)
-
-
-def _set_first(table: dict[str, Any], key: str, entries: Any) -> None:
-    """Set a swept key that the scene leaves out to the first of its entries."""
-    inner: Any = table
-    for part in key.split("."):
-        inner = inner.get(part) if isinstance(inner, dict) else None
-    if isinstance(entries, dict):
-        entries = entries.get("linspace", entries.get("logspace"))
-    if inner is None and isinstance(entries, list) and entries:
-        set_key(table, key, entries[0])

@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from roughmdr.fitting.compare import Choice
 from roughmdr.fitting.doubts import doubts
 from roughmdr.fitting.model import Model
 from roughmdr.fitting.parameters import Parameter
@@ -10,6 +11,7 @@ from roughmdr.fitting.search import Found
 from roughmdr.fitting.uncertainty import Uncertainty
 from roughmdr.loading.path import labelled_branches
 from roughmdr.result.trust import trust_lines
+from roughmdr.schema.units import format_quantity, spelled_in_results
 from roughmdr.storage.labelled import Array, Labelled
 from roughmdr.storage.result_file import FIT, provenance
 
@@ -19,11 +21,13 @@ _REFERENCES = (
     "and McCaffrey (2002), Survey Methodology 28, 169: its degrees of freedom"
 )
 _NAMES = {"force": "force", "pressure": "pressure, force over nominal area"}
+_CONSTANT = "spring constant that the file of the curve tells"
 _CONTROLS = {"separation": "separation", "remote": "position of the far end of the spring"}
 
 
-def assemble(model: Model, found: Found, known: Uncertainty, seconds: float, command: str) -> Labelled:
+def assemble(choice: Choice, known: Uncertainty, seconds: float, command: str) -> Labelled:
     """Return the result of a fit, as it is stored."""
+    model, found, compared, _ = choice
     law, scene, curve = model.law(found.x), model.fitted(found.x), model.curve
     variables: dict[str, Array] = {}
     for i, parameter in enumerate(model.parameters):
@@ -49,14 +53,16 @@ def assemble(model: Model, found: Found, known: Uncertainty, seconds: float, com
             np.array([parameter.scale for parameter in model.parameters]),
             {"long_name": "scale of a fitted number in SI, 0 where its logarithm was fitted"},
         ),
-        **_of_curve(model, law.variables[curve.quantity]),
+        **_of_curve(model, law.variables[curve.quantity] + model.baseline(found.x)),
         "residual_rms": _number(
             relative_rms(curve, found.deviations),
             "1",
             "root mean square of the residual over the largest load",
         ),
+        **({} if curve.stiffness is None else {"spring_constant": _number(curve.stiffness, "N m-1", _CONSTANT)}),
         "evaluation_count": _number(model.evaluations, "1", "number of evaluations of the expected law"),
         "run_time": _number(seconds, "s", "time spent on the fit"),
+        **{name: each for name, each in compared.items() if "units" in each.attrs},
     }
     keys = np.array([parameter.key for parameter in model.parameters])
     coordinates = {
@@ -64,16 +70,17 @@ def assemble(model: Model, found: Found, known: Uncertainty, seconds: float, com
         "branch": labelled_branches(curve.values)._replace(dims=_POINT),
         "parameter_name": Array(_PARAMETER, keys, {"long_name": "key of the parameter in the scene"}),
         "parameter_2_name": Array(("parameter_2",), keys, {"long_name": "key of the parameter in the scene"}),
+        **{name: each for name, each in compared.items() if "units" not in each.attrs},
     }
-    warnings = [*doubts(model, found, known), *law.warnings]
+    warnings = [*choice.doubts, *doubts(model, found, known), *law.warnings]
     interaction = None if scene.interaction is None else scene.interaction.model
     attrs = {
         **provenance(scene.title, command),
         "kind": FIT,
         "references": _REFERENCES,
-        "measured": curve.origin,
+        "measured": f"{curve.origin}: {curve.about}" if curve.about else curve.origin,
         "scene": scene.toml,
-        "intervals": "95 %, by the stated errors" if curve.error is not None else "95 %, residuals nearby, Student's t",
+        "intervals": _intervals(model, known),
         "trust": dict(trust_lines(law.model_error.named, interaction=interaction))["trust"],
     }
     if warnings:
@@ -82,10 +89,24 @@ def assemble(model: Model, found: Found, known: Uncertainty, seconds: float, com
     return result._replace(attrs={**attrs, "checksum": result.checksum()})
 
 
+def _intervals(model: Model, known: Uncertainty) -> str:
+    """Return what the intervals are by, in words."""
+    text = "95 %, residuals nearby, Student's t" if model.curve.error is None else "95 %, by the stated errors"
+    if known.noise.rho:
+        text += f"; wider, as residuals of neighbours are correlated by {known.noise.rho:.2g}"
+    if keys := [each.key for each, is_so in zip(model.parameters, known.by_profile, strict=True) if is_so]:
+        text += f"; by profile likelihood for {', '.join(keys)}"
+    for each in model.parameters:
+        if each.prior is not None:
+            text += f"; with the prior {each.key} = {format_quantity(each.prior[0], each.unit, error=each.prior[1])}"
+    return text
+
+
 def _of_parameter(parameter: Parameter, i: int, found: Found, known: Uncertainty) -> dict[str, Array]:
     """Return a parameter with its standard error and its interval, limited to the bounds of the search."""
     x, error = float(found.x[i]), float(known.standard_error[i])
-    (lower, upper), per_x, key, unit = known.reach[:, i], parameter.per_x(x), parameter.key, _spelled(parameter.unit)
+    (lower, upper), per_x, key = known.reach[:, i], parameter.per_x(x), parameter.key
+    unit = spelled_in_results(parameter.unit)
     numbers = {
         "": (parameter.value(x), f"fitted {key}"),
         "_standard_error": (per_x * error, f"standard error of the fitted {key}"),
@@ -104,7 +125,7 @@ def _of_curve(model: Model, fitted: np.ndarray) -> dict[str, Array]:
     name, unit = _NAMES[curve.quantity], curve.unit
     columns = {
         curve.quantity: (curve.load, f"measured {name}"),
-        f"{curve.quantity}_fitted": (fitted, f"{name} of the fitted scene"),
+        f"{curve.quantity}_fitted": (fitted, f"{name} of the fitted scene, with its baseline"),
         "residual": (curve.load - fitted, f"measured minus fitted {curve.quantity}"),
     }
     if curve.error is not None:
@@ -114,8 +135,3 @@ def _of_curve(model: Model, fitted: np.ndarray) -> dict[str, Array]:
 
 def _number(value: float, unit: str, long_name: str) -> Array:
     return Array((), np.array(float(value)), {"units": unit, "long_name": long_name})
-
-
-def _spelled(unit: str) -> str:
-    """Return a unit of a scene as CF spells it."""
-    return unit.replace("/m^2", " m-2").replace("/m", " m-1")

@@ -1,5 +1,6 @@
 """The search for the parameters of least squares: from the start of the scene, and if need be from others."""
 
+import time
 from functools import partial
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -7,7 +8,7 @@ import numpy as np
 
 from roughmdr.fitting.jumps import least_squares_between, with_measured_jumps
 from roughmdr.fitting.model import Model
-from roughmdr.fitting.residuals import is_systematic, relative_rms
+from roughmdr.fitting.residuals import POOR, is_systematic, relative_rms
 from roughmdr.fitting.slopes import slopes_of
 from roughmdr.numerics.arguments import Floats
 
@@ -16,7 +17,6 @@ if TYPE_CHECKING:
 
 _FTOL, _XTOL, _GTOL, _MAX_STEPS = 1e-10, 1e-7, 1e-12, 60
 _STARTS, _TRIED = 16, 3  # other starts per parameter, and number of them that are followed
-_POOR = 0.05  # r.m.s. deviation over the largest load from which other starts are tried too
 
 
 class Found(NamedTuple):
@@ -27,10 +27,30 @@ class Found(NamedTuple):
     slopes: Floats
     """Derivatives of the deviations: [step, parameter]."""
     converged: bool
+    points: int
+    """Number of measured points; deviations behind them are from priors and other curves."""
+
+    @property
+    def residuals(self) -> Floats:
+        """The deviations from the measured points alone."""
+        return self.deviations[: self.points]
 
 
 def search(model: Model) -> Found:
     """Return the parameters of least squares; RoughmdrError where no start has a law.
+
+    Priors count once the noise is known: where it is not stated, after a search without them.
+    """
+    started, found = time.perf_counter(), _from_all_starts(model)
+    if model.noise == 0.0 and any(parameter.prior for parameter in model.parameters):
+        model.assume_noise_of(found.deviations, found.slopes)
+        found = _from_all_starts(model)
+    model.seconds += time.perf_counter() - started
+    return found
+
+
+def _from_all_starts(model: Model) -> Found:
+    """Return the parameters of least squares, from the start of the scene and if need be from others.
 
     Where the deviations from the start of the scene are systematic or large, other starts around it are tried. On a
     machine, whose law takes longer, they are tried at the separations that follow from the measured force.
@@ -41,11 +61,14 @@ def search(model: Model) -> Found:
         with model.held(load=model.curve.load):
             near = _search(model)
         found = _follow(model, near.x)
-    return _settled(model, found) if model.jumps and _cost(found) > 0.0 and found.slopes.any() else found
+    if model.jumps and _cost(found) > 0.0 and found.slopes.any():
+        found = _settled(model, found)
+    model.curve = model.curve._replace(level=model.baseline(found.x))
+    return found
 
 
 def _search(model: Model) -> Found:
-    start = np.zeros(len(model.parameters))
+    start = model.begin
     first = with_measured_jumps(model, start) if model.jumps and model.exact else start
     found = [_follow(model, first)] if np.isfinite(model.deviations(first)).all() else []
     if not found or _is_poor(model, found[0]):
@@ -65,11 +88,11 @@ def _cost(found: Found) -> float:
 def _settled(model: Model, found: Found) -> Found:
     """Return the least squares of all intervals between jumps: see ``jumps``."""
     x = least_squares_between(model, found.x)
-    return Found(x, model.deviations(x), slopes_of(model, x), found.converged)
+    return Found(x, model.deviations(x), slopes_of(model, x), found.converged, found.points)
 
 
 def _is_poor(model: Model, found: Found) -> bool:
-    return is_systematic(found.deviations) or relative_rms(model.curve, found.deviations) > _POOR
+    return is_systematic(found.residuals) or relative_rms(model.curve, found.deviations) > POOR
 
 
 def _follow(model: Model, start: Floats) -> Found:
@@ -90,7 +113,7 @@ def _follow(model: Model, start: Floats) -> Found:
         gtol=_GTOL,
         max_nfev=_MAX_STEPS,
     )
-    return Found(result.x, result.fun, result.jac, result.status > 0)
+    return Found(result.x, result.fun, result.jac, result.status > 0, model.curve.load.size)
 
 
 def _other_starts(model: Model) -> Floats:

@@ -26,7 +26,9 @@ def slopes_of(model: Model, x: Floats) -> Floats:
         at_given = _at_given(model, model.point(x))
         spring = _spring(model, x)
     model.near = None if model.jumps else spring
-    return spring.yielded(at_given)
+    points = middle.load.size  # rows behind them are from priors
+    lines = model.baselines / model.curve.weight[:, None]  # which are beside the law
+    return np.vstack([spring.yielded(at_given[:points] - lines) + lines, at_given[points:]])
 
 
 def yielded(model: Model, x: Floats, change: Floats) -> Floats:
@@ -40,19 +42,25 @@ def yielded(model: Model, x: Floats, change: Floats) -> Floats:
 
 def _at_given(model: Model, middle: Point) -> Floats:
     """Return the derivatives of the deviations where the load that stretches a spring stays."""
-    step = _step(middle)
+    low, high = model.bounds
+    steps = np.minimum(_step(middle), 0.5 * (high - low))  # to one side at least they stay within the bounds
 
-    def slope(direction: Floats) -> Floats:
-        sides = [model.point_at(middle.x + sign * step * direction).deviations for sign in (1.0, -1.0)]
-        return _difference(model, middle.deviations, sides, step)
+    def side(direction: Floats) -> Floats:
+        x = middle.x + steps * direction
+        inside = (low <= x) & (x <= high) | (direction == 0.0)
+        return model.point_at(x).deviations if inside.all() else np.full_like(middle.deviations, np.inf)
 
-    return np.stack([slope(direction) for direction in np.eye(middle.x.size)], axis=1)
+    def slope(direction: Floats, step: float) -> Floats:
+        return _difference(model, middle.deviations, [side(direction), side(-direction)], step)
+
+    pairs = zip(np.eye(middle.x.size), steps.tolist(), strict=True)
+    return np.stack([slope(*pair) for pair in pairs], axis=1)
 
 
 def _spring(model: Model, x: Floats) -> Spring:
     """Return how the load changes with the separation on a machine, whose spring bears a given load."""
     middle, scene = model.point(x), model.scene(x)
-    step = _step(middle) * length_scale(scene, model.curve)
+    step = _step(middle) * length_scale(model.curve)
 
     def slope(steps: NDArray[np.bool_]) -> Floats:
         sides = [model.load(x, model.curve.values + sign * step * steps).load for sign in (1.0, -1.0)]

@@ -3,14 +3,15 @@
 import os
 import warnings
 from collections.abc import Iterator
+from itertools import chain
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from roughmdr.errors import RoughmdrError, StoreError, level_outside
-from roughmdr.fitting.words import is_open
-from roughmdr.storage.labelled import Labelled
+from roughmdr.fitting.words import COMPARED, curve_names, is_open
+from roughmdr.storage.labelled import Array, Labelled
 from roughmdr.storage.netcdf_reading import read_netcdf
 from roughmdr.storage.result_file import FIT, is_fit
 from roughmdr.storage.result_form import Form, attribute_faults, is_text, refuse, with_units
@@ -22,6 +23,8 @@ if TYPE_CHECKING:
 
 _ENDS = ("", "_standard_error", "_low", "_high")
 _CONTROLS = ("remote", "separation")
+_OF_MANY = {name: Form(("curve",), "text", "") for name in ("curve", "failure", "remark")}
+_OF_MANY |= {"branch": Form(("curve", "point"), "text", "")}
 
 
 def read_fit(path: Path) -> Labelled:
@@ -56,14 +59,41 @@ def as_fit(data: Labelled, file: Path | None = None) -> Labelled:
     """Return arrays, of a file or not, as a fit, with the declared units where they have none; StoreError if they are
     none.
     """
-    faults = (fault for check in (_attributes, _arrays, _values) for fault in check(data))
-    refuse(faults, "fit", "fit", file)
+    faults = (fault for each in _one_by_one(data) for check in (_arrays, _values) for fault in check(each))
+    refuse(chain(_attributes(data), faults), "fit", "fit", file)
     return with_units(data, _forms(data) | _optional_forms(data))
 
 
 def _attributes(data: Labelled) -> Iterator[str]:
     yield from attribute_faults(data.attrs, FIT_ATTRIBUTES)
     yield from scene_faults(data.attrs["scene"])
+    if "curve" not in data.sizes:
+        return
+    for name, form in _OF_MANY.items():
+        array = data.coordinates.get(name)
+        yield from [f"it has no {name}"] if array is None else form.mismatches(name, array)
+    if "" not in data.coordinates["failure"].values:
+        yield "none of its curves could be fitted"
+
+
+def _one_by_one(data: Labelled) -> Iterator[Labelled]:
+    """Yield the fit of each curve that was fitted, without the padding of its points; a fit of one as it is."""
+    if not curve_names(data):
+        yield data
+        return
+    for i in np.flatnonzero(data.coordinates["failure"].values == ""):
+        points = int(np.count_nonzero(data.coordinates["branch"].values[i] != ""))
+        yield Labelled(_of_curve(data.variables, i, points), _of_curve(data.coordinates, i, points), data.attrs)
+
+
+def _of_curve(arrays: dict[str, Array], curve: np.intp, points: int) -> dict[str, Array]:
+    """Return arrays of one curve, whose points end where it does."""
+    found = dict(arrays)
+    for name, (dims, values, attrs) in arrays.items():
+        if dims[:1] == ("curve",):
+            one = np.asarray(values[curve])
+            found[name] = Array(dims[1:], one[:points] if dims[1:] == ("point",) else one, attrs)
+    return found
 
 
 def _arrays(data: Labelled) -> Iterator[str]:
@@ -84,6 +114,7 @@ def _arrays(data: Labelled) -> Iterator[str]:
 def _values(data: Labelled) -> Iterator[str]:
     """Find values that no fit has: not finite, or outside their own interval."""
     ends = {name for _, names in _parameters(data) for name in names[1:]}  # infinite where nothing is determined
+    ends |= {*COMPARED}  # infinite where there is no fit, and for JKR
     for name, form in (_forms(data) | _optional_forms(data)).items():
         array = (data.variables | data.coordinates).get(name)
         if array is not None and form.kind == "f" and name not in ends and not np.isfinite(array.values).all():
@@ -120,9 +151,12 @@ def _forms(data: Labelled) -> dict[str, Form]:
 
 
 def _optional_forms(data: Labelled) -> dict[str, Form]:
-    """Return the forms of the arrays that a fit can have: errors of the measured points, and of the model."""
+    """Return the forms of the arrays that a fit can have: errors of points and of the model, adhesion models."""
     errors = {f"{names[0]}_model_error": Form((), "f", "") for _, names in _parameters(data)}
-    return errors | {f"{_load(data)}_error": Form(("point",), "f", MEASURED[_load(data)])}
+    compared = {name: Form(("model",), "f", "1") for name in COMPARED}
+    compared |= {name: Form(("model",), "text", "") for name in ("model_name", "model_failure")}
+    compared |= {"spring_constant": Form((), "f", "N m-1")}
+    return errors | compared | {f"{_load(data)}_error": Form(("point",), "f", MEASURED[_load(data)])}
 
 
 def _load(data: Labelled) -> str:

@@ -3,11 +3,17 @@
 import math
 from collections.abc import Iterator
 
-from roughmdr.schema.units import format_quantity
-from roughmdr.schema.wording import format_seconds, format_table
-from roughmdr.storage.labelled import Labelled
+import numpy as np
 
+from roughmdr.schema.toml_text import parse_toml
+from roughmdr.schema.units import format_quantity
+from roughmdr.schema.wording import format_seconds, format_table, under
+from roughmdr.storage.labelled import Array, Labelled
+
+COMPARED = ("aicc", "akaike_weight", "tabor_parameter", "model_residual_rms")
+"""Numbers that compare adhesion models."""
 _DIGITS = 4, 12  # least and most digits of a fitted number
+_SAID = 5  # most failed curves that are named
 
 
 def describe_fit(fit: Labelled) -> str:
@@ -24,7 +30,12 @@ def describe_parameters(fit: Labelled) -> list[str]:
 
 def describe_shifts(fit: Labelled) -> str:
     """Return the shifts of the parameters by the error of the law; empty where that is not known."""
-    shifts = [_shift(fit, key) for key in parameter_keys(fit) if _has_shift(fit, key.replace(".", "_"))]
+    names = {key: key.replace(".", "_") for key in parameter_keys(fit)}
+    shifts = [
+        f"{key} by {format_quantity(_number(fit, f'{name}_model_error'), fit.variables[name].attrs['units'])}"
+        for key, name in names.items()
+        if f"{name}_model_error" in fit.variables and not is_open(fit, name)
+    ]
     return f"not in the intervals: that of the law may shift {', '.join(shifts)}" if shifts else ""
 
 
@@ -34,18 +45,61 @@ def parameter_keys(fit: Labelled) -> list[str]:
 
 
 def _lines(fit: Labelled) -> Iterator[tuple[str, str]]:
+    many, fit = fit, typical(fit)
     for i, line in enumerate(describe_parameters(fit)):
         yield "" if i else "fitted", line
-    yield "intervals", "± one standard error; in parentheses 95 %"
+    if fit.attrs.get("measured", "measured") != "measured":  # a file
+        yield "measured", str(fit.attrs["measured"])
+    _, *reasons = str(fit.attrs.get("intervals", "")).split("; ")
+    of_many = "median ± median standard error; in parentheses from 5 to 95 % of the curves"
+    if shared := [key for key in parameter_keys(many) if not many.variables[key.replace(".", "_")].dims]:
+        of_many += f"; of {', '.join(shared)}, one for all, 95 %"
+    of_one = "; ".join(["± one standard error; in parentheses 95 %", *reasons])
+    yield "intervals", of_many if curve_names(many) else of_one
     load = "pressure" if "pressure_fitted" in fit.variables else "force"
     points = fit.variables["residual"].values.size
     yield "residual", f"{100.0 * _number(fit, 'residual_rms'):.2g} % of the largest {load} (r.m.s. of {points} points)"
     if shifts := describe_shifts(fit):
         yield "model error", shifts
+    if "aicc" in fit.variables:
+        yield from _models(fit)
     yield "trust", str(fit.attrs["trust"])
     yield "computed", f"{_number(fit, 'evaluation_count'):.0f} laws in {format_seconds(_number(fit, 'run_time'))}"
     for text in str(fit.attrs.get("warnings", "")).splitlines():
         yield "warning", text
+    failed = [(name, many.coordinates["failure"].values[i]) for i, name in enumerate(curve_names(many))]
+    yield from under("failed", [f"{name}: {text}" for name, text in failed if text][:_SAID])
+
+
+def curve_names(fit: Labelled) -> list[str]:
+    """Return the names of the curves of a fit of many."""
+    return list(map(str, fit.coordinates["curve"].values)) if "curve" in fit.sizes else []
+
+
+def typical(fit: Labelled) -> Labelled:
+    """Return a fit of many curves as that of one: medians, sums of work, and intervals from 5 to 95 % of the curves."""
+    names = [key.replace(".", "_") for key in parameter_keys(fit)]
+    shares = {f"{name}_{end}": share for name in names for end, share in (("low", 5.0), ("high", 95.0))}
+
+    def one(name: str, array: Array) -> Array:
+        if array.dims[:1] != ("curve",):
+            return array
+        work = name in ("run_time", "evaluation_count")
+        values = np.nansum(array.values, 0) if work else np.nanpercentile(array.values, shares.get(name, 50.0), 0)
+        return array._replace(dims=array.dims[1:], values=values)
+
+    return fit._replace(variables={name: one(name, array) for name, array in fit.variables.items()})
+
+
+def _models(fit: Labelled) -> Iterator[tuple[str, str]]:
+    """Yield a line for each adhesion model: how much worse than the best it is, or why it fails."""
+    chosen = parse_toml(str(fit.attrs["scene"])).get("adhesion", {}).get("model", "none")
+    numbers = [fit.variables[name].values for name in COMPARED]
+    texts = [fit.coordinates[name].values for name in ("model_name", "model_failure")]
+    for i, (name, failure, aicc, weight, tabor, size) in enumerate(zip(*texts, *numbers, strict=True)):
+        worse = aicc - numbers[0].min()
+        told = f"AICc +{worse:.3g}, weight {weight:.2g}, Tabor number {tabor:.3g}, residual {100.0 * size:.2g} %"
+        yield "" if i else "models", f"{name:<7}  {failure or told + ', chosen' * (name == chosen)}"
 
 
 def _with_interval(fit: Labelled, name: str) -> str:
@@ -71,15 +125,6 @@ def is_open(fit: Labelled, name: str) -> bool:
     position = [key.replace(".", "_") for key in parameter_keys(fit)].index(name)
     scale = float(fit.variables["parameter_scale"].values[position]) or _number(fit, name)
     return _number(fit, f"{name}_standard_error") > scale
-
-
-def _has_shift(fit: Labelled, name: str) -> bool:
-    return f"{name}_model_error" in fit.variables and not is_open(fit, name)
-
-
-def _shift(fit: Labelled, key: str) -> str:
-    name = key.replace(".", "_")
-    return f"{key} by {format_quantity(_number(fit, f'{name}_model_error'), fit.variables[name].attrs['units'])}"
 
 
 def _number(fit: Labelled, name: str) -> float:

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from roughmdr.fitting.words import describe_parameters, describe_shifts
+from roughmdr.fitting.words import describe_parameters, describe_shifts, parameter_keys, typical
 from roughmdr.pictures.style import BRANCH_COLOURS, Scale, set_title
 from roughmdr.storage.labelled import Labelled
 
@@ -14,6 +14,22 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 _CONTROLS = {"separation": "measured separation", "remote": "measured position of the far end of the spring"}
+
+
+def draw_fits(fits: Labelled) -> "Figure":
+    """Draw how each parameter, and the size of the residuals, are distributed over many curves."""
+    from matplotlib.figure import Figure
+
+    keys = {key: key.replace(".", "_") for key in parameter_keys(fits)} | {"residual over largest load": "residual_rms"}
+    drawn = {key: array for key, name in keys.items() if (array := fits.variables[name]).dims}
+    figure = Figure(figsize=(6.4, 2.1 * len(drawn)), layout="constrained")
+    for ax, (key, array) in zip(figure.subplots(len(drawn), 1, squeeze=False).flat, drawn.items(), strict=True):
+        values = array.values[np.isfinite(array.values)]
+        scale = Scale.of(values, key, array.attrs["units"])
+        ax.hist(scale(values), bins="auto")
+        ax.set(xlabel=scale.label, ylabel="curves")
+    set_title(figure, str(fits.attrs["title"]), [" ".join(line.split()) for line in describe_parameters(typical(fits))])
+    return figure
 
 
 def draw_fit(fit: Labelled) -> "Figure":

@@ -132,9 +132,10 @@ def _convergence(source: Drawable, request: Request) -> Picture:
 
 
 def _fit(source: Drawable, _: Request) -> Picture:
-    from roughmdr.pictures.fit import draw_fit
+    from roughmdr.pictures.fit import draw_fit, draw_fits
 
-    return Picture(draw_fit(source.data), [])
+    draw = draw_fits if "curve" in source.data.sizes else draw_fit
+    return Picture(draw(source.data), [])
 
 
 KINDS = {

@@ -4,20 +4,22 @@ import multiprocessing
 import os
 import signal
 import threading
-from collections.abc import Callable, Iterable, Iterator, Mapping
-from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor, as_completed
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager, suppress
 from functools import partial
 from itertools import islice
 from multiprocessing.context import SpawnContext
 from multiprocessing.synchronize import Event
-from typing import Any, Protocol
+from typing import Any, Protocol, TypeVar
 
 from roughmdr.batch.task_result import TaskResult
 from roughmdr.batch.tasks import Task, compute, failed
-from roughmdr.errors import RoughmdrError
+from roughmdr.errors import RoughmdrError, Unfinished
 
+_Item = TypeVar("_Item")
+_Done = TypeVar("_Done")
 Sink = Callable[[TaskResult], None]  # receives a finished task result, in the thread that called
 
 _BATCH = 64  # tasks a worker that dask is given at a time: it finishes a batch before it begins the next one
@@ -147,6 +149,28 @@ class ProcessGroup:
         for process in list((self.pool._processes or {}).values()):
             process.kill()
         self.pool.shutdown(wait=False, cancel_futures=True)
+
+
+def over_processes(
+    function: Callable[[_Item], _Done], items: Sequence[_Item], workers: int
+) -> Iterator[tuple[int, _Done]]:
+    """Yield the position of each item with what the function makes of it, as they are done.
+
+    One worker is this process. Unfinished where a process dies.
+    """
+    if workers == 1:
+        yield from enumerate(map(function, items))
+        return
+    context = multiprocessing.get_context("spawn")
+    group = ProcessGroup(workers, context, context.Event())
+    try:
+        futures = {group.pool.submit(function, item): position for position, item in enumerate(items)}
+        for future in as_completed(futures):
+            yield futures[future], future.result()
+    except BrokenProcessPool:
+        raise Unfinished("a process died, perhaps for lack of memory; fewer workers take less") from None
+    finally:
+        group.end()
 
 
 @contextmanager

@@ -51,7 +51,7 @@ def _tell(line: str) -> None:
 
 
 @contextmanager
-def progress(title: str, *, quiet: bool) -> Iterator[Progress]:
+def progress(title: str, *, quiet: bool, kind: str = "runs") -> Iterator[Progress]:
     """Open a display on the standard error stream."""
     if quiet or sys.stderr is None:
         yield Progress(title)
@@ -59,7 +59,7 @@ def progress(title: str, *, quiet: bool) -> Iterator[Progress]:
         with _bar(title) as display, _updated(display, 0.5 * _SECONDS_OF_A_RUN):
             yield display
     else:
-        lines = _Lines(title)
+        lines = _Lines(title, kind)
         with _updated(lines, 0.1 * _SECONDS_BETWEEN_LINES):
             yield lines
         lines.print()
@@ -84,9 +84,9 @@ def _updated(display: Progress, interval: float) -> Iterator[None]:
 
 
 class _Lines(Progress):
-    def __init__(self, title: str) -> None:
+    def __init__(self, title: str, kind: str) -> None:
         super().__init__(title)
-        self._printed, self._last, self._lock = time.monotonic(), "", threading.Lock()
+        self._kind, self._printed, self._last, self._lock = kind, time.monotonic(), "", threading.Lock()
 
     def update(self) -> None:
         with self._lock:
@@ -98,7 +98,7 @@ class _Lines(Progress):
     @property
     def _counts(self) -> str:
         more = f", {self.reused} used again" if self.reused else ""
-        return f"{self.title}: {self.done} of {self.total} runs{more}"
+        return f"{self.title}: {self.done} of {self.total} {self._kind}{more}"
 
     def print(self) -> None:
         _tell(self._counts)

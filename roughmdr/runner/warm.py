@@ -1,20 +1,17 @@
 """Compiles the functions that scenes need before they are run, by short runs in several processes."""
 
-import multiprocessing
 import time
 from collections import Counter
 from collections.abc import Iterator, Sequence
-from concurrent.futures import as_completed
-from concurrent.futures.process import BrokenProcessPool
 from functools import partial
 from pathlib import Path
 from typing import Any, NamedTuple
 
 from roughmdr.batch.plan import make_plan
-from roughmdr.errors import RoughmdrError, StoreError, Unfinished
+from roughmdr.errors import RoughmdrError, StoreError
 from roughmdr.numerics.cache import USED, VARIABLE, compiles, folders
 from roughmdr.runner.backend import Backend
-from roughmdr.runner.local import ProcessGroup
+from roughmdr.runner.local import over_processes
 from roughmdr.runner.progress import progress
 from roughmdr.runner.run import execute
 from roughmdr.runner.small_scenes import small_scenes
@@ -49,7 +46,7 @@ def warm(scenes: Sequence[Scene], workers: int, *, quiet: bool = True) -> Warmed
     used: _Used = {}
     with progress("compiling", quiet=quiet) as display:
         display.add(total=len(small))
-        for of_scene in _run_all(small, min(workers, len(small))):
+        for _, of_scene in over_processes(_run, small, min(workers, len(small))):
             used |= {name: folder for name, folder in of_scene.items() if used.get(name, name) is not None}
             display.add(done=1)
     found = Counter(folder for folder in used.values() if folder is not None)
@@ -72,22 +69,6 @@ def _shorten(table: dict[str, Any], estimator: str) -> None:
             section["steps"] = min(section["steps"], _STEPS)
     if any(key.startswith("preload") for key in path):
         path["steps"] = min(path.get("steps", _STEPS), _STEPS)
-
-
-def _run_all(scenes: list[Scene], workers: int) -> Iterator[_Used]:
-    """Run scenes and yield the functions that each used, as they are done."""
-    if workers == 1:
-        yield from map(_run, scenes)
-        return
-    context = multiprocessing.get_context("spawn")
-    group = ProcessGroup(workers, context, context.Event())
-    try:
-        for done in as_completed([group.pool.submit(_run, scene) for scene in scenes]):
-            yield done.result()
-    except BrokenProcessPool:
-        raise Unfinished("a process that compiled died, perhaps for lack of memory; fewer workers take less") from None
-    finally:
-        group.end()
 
 
 def _run(scene: Scene) -> _Used:

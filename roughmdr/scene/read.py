@@ -18,7 +18,7 @@ from roughmdr.scene.sweep import flatten
 from roughmdr.schema.toml_text import key_lines, line_of, parse_toml, unquote_key
 from roughmdr.schema.wording import printable, short_repr
 from roughmdr.storage.files import check_regular_file, is_open_pipe
-from roughmdr.storage.netcdf_reading import read_attribute
+from roughmdr.storage.netcdf_reading import read_attribute, read_dimensions
 
 _NETCDF_MAGIC = (b"\x89HDF", b"CDF")
 _MAX_BYTES = 2**24
@@ -97,9 +97,12 @@ def _read_text(path: Path) -> str:
         raise SceneError(f"{path}: {error}") from None
     if content.startswith(_NETCDF_MAGIC):
         try:
-            return read_attribute(path, "scene")
+            text, arrays = read_attribute(path, "scene"), read_dimensions(path)
         except RoughmdrError as error:
             raise SceneError(f"{path}: a netCDF file, but no result of roughmdr with a scene in it ({error})") from None
+        if "failure" in arrays:
+            raise SceneError(f"{path}: has fits of many curves, each of another scene: fit one alone to have its own")
+        return text
     if len(content) > _MAX_BYTES:
         raise SceneError(f"{path}: is longer than {_MAX_BYTES} bytes, the most that a scene can have")
     try:

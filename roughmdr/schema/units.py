@@ -19,6 +19,11 @@ _ALONE = {
     "1": {"%": Decimal("0.01")},
     "m": {**_METRES, "micron": _MICRON, "microns": _MICRON, "angstrom": _ANGSTROM, "Å": _ANGSTROM},
     "J/m^2": {"erg/cm^2": Decimal("1e-3")},
+    "N/m": {
+        f"{of}N/{over}m": Decimal(10) ** (power - _PREFIX[over])
+        for over in ("n", "u", "µ", "μ", "m")
+        for of, power in {"": 0, **_PREFIX}.items()
+    },
 }
 
 # For each SI unit, as in ``variables``, its spellings and the power to which a prefix is raised there (mm^2: 2).
@@ -30,6 +35,7 @@ _BASES: dict[str, tuple[tuple[str, int], ...]] = {
     "J/m^2": (("J/m^2", 1), ("N/m", 1)),
     "N": (("N", 1),),
     "N/m": (("N/m", 1),),
+    "Pa/m": (("Pa/m", 1),),
     "s": (("s", 1),),
     "m/s": (("m/s", 1),),
     "W/m/K": (("W/m/K", 1), ("W/(m K)", 1)),
@@ -55,7 +61,8 @@ def _table(dimension: str) -> dict[str, Decimal]:
 _EXAMPLES = {
     "m": '"10 um", "5 nm"', "Pa": '"3 MPa", "70 GPa"', "J/m^2": '"50 mJ/m^2"', "m2": '"1 mm^2"',
     "m-2": '"1e9 /m^2"', "N": '"3 mN"',
-    "N/m": '"0.1 N/m"', "s": '"10 ms"', "m/s": '"1 um/s"', "W/m/K": '"50 W/m/K"', "ohm m": '"20 nohm m"',
+    "N/m": '"0.1 N/m", "1 nN/um"', "Pa/m": '"1 MPa/m"',
+    "s": '"10 ms"', "m/s": '"1 um/s"', "W/m/K": '"50 W/m/K"', "ohm m": '"20 nohm m"',
     "W/K": '"3 mW/K"', "S": '"2 kS"',
 }  # fmt: skip
 _SHOWN = {-15: "f", -12: "p", -9: "n", -6: "u", -3: "m", 0: "", 3: "k", 6: "M", 9: "G", 12: "T"}
@@ -63,6 +70,7 @@ _SPELLED = {
     "m2": "m^2",
     "J m-2": "J/m^2",
     "N m-1": "N/m",
+    "Pa m-1": "Pa/m",
     "m-2": "/m^2",
     "W K-1": "W/K",
     "W m-1 K-1": "W/m/K",

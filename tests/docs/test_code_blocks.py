@@ -30,6 +30,7 @@ LONG = [
     "contact_engineering",
     "greenwood_williamson",
     "layers",
+    "measured_curves",
     "paths",
     "start",
 ]

@@ -241,7 +241,7 @@ def test_three_or_more_that_are_not_told_apart() -> None:
 @pytest.mark.parametrize(
     ("changes", "free", "message"),
     [
-        ({}, ["adhesion.wrok"], r"free: adhesion.wrok: is no number of the scene that can be fitted; did you mean"),
+        ({}, ["adhesion.wrok"], r"free: adhesion.wrok: is no number of the scene that can be varied; did you mean"),
         ({}, ["adhesion.strength"], "free: adhesion.strength: is not in the scene"),
         ({}, ["asperities.count"], "takes whole numbers only"),
         ({}, ["adhesion.model"], "is no number of the scene"),

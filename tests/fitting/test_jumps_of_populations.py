@@ -8,9 +8,10 @@ import pytest
 from tips import MODULUS, OFFSET, WORK, Tip
 
 import roughmdr as rm
+from roughmdr.fitting.fitted_scene import scene_to_fit
 from roughmdr.fitting.jumps import jumps_at
 from roughmdr.fitting.measured import read_measured
-from roughmdr.fitting.model import Model, scene_to_fit
+from roughmdr.fitting.model import Model
 
 TIP, BELOW, ZERO = Tip("jkr", 1e-6, 2e6), 0.6e-6, 1e-7
 FREE = [MODULUS, WORK, OFFSET]
@@ -36,7 +37,7 @@ def test_the_jumps_of_both_lie_where_they_are_alone(points: int) -> None:
     """Made at first touch and lost at the fold, -3/4 (pi w R^(1/2)/E*)^(2/3); of few points, in one step together."""
     measured, _ = measure(0, points)
     curve = read_measured(measured, 3)
-    model = Model(scene_to_fit(two(), {}, curve, FREE), curve, FREE)
+    model = Model(*scene_to_fit(two(), {}, curve, FREE), FREE)
     offset = model.parameters[2]
     x = np.array([0.0, 0.0, (ZERO - offset.start) / offset.scale])
     found = jumps_at(model, x)

@@ -83,12 +83,14 @@ def test_without_errors_the_largest_load_weighs_all_points_also_those_out_of_con
         ("separation,force\n1,0\n2,0\n3,0\n4,0\n", r"force is 0 in every row"),
         ("separation,force,force_error\n1,1,0\n2,1,1\n3,1,1\n4,1,1\n", r"line 2: force_error = '0': must be above 0"),
         ("# nothing\n", "is empty"),
+        ("", "is empty"),
+        ("# columns: separation and force\nseparation,force\n1,2\n2,1\n3,1\n", r"has 3 rows; at least 4 are needed"),
         ("1,2\n2,3\n", r"needs one column separation, remote or piezo; it has neither among 1, 2"),
     ],
 )
 def test_a_fault_is_told_with_its_place(tmp_path: Path, text: str, message: str) -> None:
     path = tmp_path / "curve.csv"
-    path.write_text(text)
+    path.write_bytes(text.encode("latin-1"))
     with pytest.raises(StoreError, match=message) as raised:
         read_measured(path, 1)
     assert str(raised.value).startswith(str(path))
@@ -99,7 +101,7 @@ def test_files_that_are_none(tmp_path: Path) -> None:
         read_measured(tmp_path / "none.csv", 1)
     with pytest.raises(StoreError, match="is a folder"):
         read_measured(tmp_path, 1)
-    (tmp_path / "binary.csv").write_bytes(b"\xff\xfe\x00")
+    (tmp_path / "binary.csv").write_bytes(b"\x89\xff\x00")
     with pytest.raises(StoreError, match="not a text file"):
         read_measured(tmp_path / "binary.csv", 1)
     with pytest.raises(StoreError, match="it must be the path of a CSV file, a DataFrame or a Dataset"):
@@ -107,3 +109,10 @@ def test_files_that_are_none(tmp_path: Path) -> None:
     frame = pd.DataFrame({"separation": [1.0, 2.0, 3.0, 4.0], "force": [1.0, np.nan, 1.0, 1.0]})
     with pytest.raises(StoreError, match="measured: row 1: force = nan: expected a number in N"):
         read_measured(frame, 1)
+
+
+@pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig", "utf-16", "cp1252"])
+def test_text_is_read_as_spreadsheets_write_it(tmp_path: Path, encoding: str) -> None:
+    (tmp_path / "curve.csv").write_bytes("separation [µm];force [nN]\n1;0\n0,5;1\n0;3\n-1;5\n".encode(encoding))
+    curve = read_measured(tmp_path / "curve.csv", 1)
+    assert curve.values == pytest.approx([1e-6, 5e-7, 0.0, -1e-6])

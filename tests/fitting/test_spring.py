@@ -11,8 +11,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
+from roughmdr.fitting.fitted_scene import scene_to_fit
 from roughmdr.fitting.measured import read_measured
-from roughmdr.fitting.model import Model, scene_to_fit
+from roughmdr.fitting.model import Model
 from roughmdr.fitting.slopes import slopes_of
 from roughmdr.fitting.spring import Spring
 
@@ -36,7 +37,7 @@ def rough(length: float, modulus: float, unlike: bool) -> dict[str, Any]:
 def model_on_machine(scene: dict[str, Any], remote: NDArray[np.float64]) -> Model:
     force = np.linspace(-1.0, 1.0, remote.size) * scene["path"]["machine_stiffness"] * float(np.ptp(remote))
     curve = read_measured(pd.DataFrame({"remote": remote, "force": force}), len(FREE))
-    return Model(scene_to_fit(scene, {}, curve, FREE), curve, FREE)
+    return Model(*scene_to_fit(scene, {}, curve, FREE), FREE)
 
 
 @pytest.mark.parametrize(

@@ -1,0 +1,70 @@
+"""Ends of intervals where the sum of squares is no parabola: by its profile, the least over all other parameters."""
+
+import numpy as np
+
+from roughmdr.fitting.model import Model
+from roughmdr.fitting.search import Found
+from roughmdr.numerics.arguments import Floats
+
+_OFF = 0.2  # deviation of the increase of the sum of squares from that of the parabola, over the latter
+_SMALL = 1e-3  # reach in x over which any law is linear
+_ITERATIONS, _LONGEST = 30, 1.0  # most iterations, and longest change of x in one
+_TINY = np.finfo(float).tiny  # least square of a change of x that is divided by
+_CONVERGED, _MET = 1e-4, 0.02  # relative change of the reach that ends them, and error of the increase there
+
+
+def profiled(model: Model, found: Found, inverse: Floats, reach: Floats) -> Floats:
+    """Return the reach [2, parameter] with the profile's where the parabola's, which is tried, is off.
+
+    The profile ends where the sum of squares is as large as the parabola would be at its end. A ``reach`` that stays,
+    for a jump cuts it or is uncertain, is negative; one at whose end the law has other jumps stays as well.
+    """
+    covariance, ends = np.asarray(inverse @ inverse.T), np.abs(reach)
+    least, jumps = float(found.deviations @ found.deviations), model.point(found.x).jumps
+
+    def is_apart(x: Floats) -> bool:
+        return model.jumps and model.point(x).jumps != jumps
+
+    for (side, i), width in np.ndenumerate(reach):
+        if width > _SMALL:
+            increase = float(width * width / covariance[i, i])
+            ahead = (-1.0, 1.0)[side] * width * covariance[i] / covariance[i, i]
+            there = np.clip(found.x + ahead, *model.bounds)
+            off = abs(float(np.sum(np.square(model.deviations(there)))) - least - increase)
+            if not (off < _OFF * increase or is_apart(there)):
+                end = _end(model, found, i, ahead, (least + increase, _MET * increase))
+                if end is not None and not is_apart(end):
+                    ends[side, i] = abs(end[i] - found.x[i])
+    return ends
+
+
+def _end(model: Model, found: Found, i: int, ahead: Floats, goal: tuple[float, float]) -> Floats | None:
+    """Return the x with the farthest x[i] where the sum of squares is the goal, within an error, or at its bound.
+
+    D. J. Venzon, S. H. Moolgavkar (1988), Applied Statistics 37, 87, with the linearised law; None where that fails.
+    """
+    (low, high), x, longest = model.bounds, found.x, _LONGEST
+    last, slopes = found.deviations, found.slopes
+    step = ahead
+    for _ in range(_ITERATIONS):
+        trial = np.clip(x + step * min(longest / np.abs(step).max(), 1.0), low, high)
+        deviations = model.deviations(trial)
+        if not np.isfinite(deviations).all():
+            longest *= 0.5
+            continue
+        done = abs(trial[i] - x[i]) <= _CONVERGED * abs(trial[i] - found.x[i])
+        change, x, excess = trial - x, trial, float(deviations @ deviations) - goal[0]
+        if (done and abs(excess) < goal[1]) or (excess < 0.0 and x[i] in (low[i], high[i])):
+            return np.asarray(x)
+        missed = deviations - last - slopes @ change
+        slopes, last = slopes + np.outer(missed, change / max(float(change @ change), _TINY)), deviations
+        held = np.zeros(x.size, dtype=bool)
+        for _ in x:
+            inverse = np.linalg.pinv(np.where(held, 0.0, slopes))
+            step, covariance = -inverse @ deviations, inverse @ inverse.T
+            if not covariance[i, i] > 0.0:
+                return None
+            rest = goal[0] - float(np.sum(np.square(deviations + slopes @ step)))
+            step += np.sign(ahead[i]) * np.sqrt(max(rest, 0.0) / covariance[i, i]) * covariance[i]
+            held |= np.where(step < 0.0, x <= low, x >= high) & (step != 0.0) & (np.arange(x.size) != i)
+    return None
