@@ -35,5 +35,6 @@ def test_intervals_hold_the_true_values(name: str, count: int, noise: str, state
         fit = rm.fit(measured, case.scene, case.true, set=start)
         for key, value in case.true.items():
             hits[key] += inside(fit, key, value)
-    low, high = (90, 98) if count == 100 else (0.8 * count, count)
+    # Of 100 intervals of 95 % so many hold with probability 0.97; correlations found by chance make some wider.
+    low, high = (90, 99) if count == 100 else (0.8 * count, count)
     assert all(low <= each <= high for each in hits.values()), hits
