@@ -84,7 +84,9 @@ def forms_of(runs: tuple[str, ...]) -> dict[str, Form]:
 
 
 def control_forms(data: Labelled) -> dict[str, Form]:
-    """Return the forms of the coordinates over the steps that a result has, over the swept keys that change them."""
+    """Return the forms of the coordinates that a result has: over the steps and those swept keys that change them, and
+    of its derivatives.
+    """
     declared = STEP_COORDINATES | {name: each.units for name, each in COORDINATES.items() if name in ("time", "branch")}
     cells = [dim for dim in data.variables["status"].dims if dim != "realization"]
     forms = {}
@@ -92,7 +94,8 @@ def control_forms(data: Labelled) -> dict[str, Form]:
         if name in data.coordinates:
             own = () if name == "branch" else tuple(dim for dim in cells if dim in data.coordinates[name].dims)
             forms[name] = Form((*own, "step"), "f" if units else "text", units)
-    return forms
+    of_derivatives = {name for name in ("parameter", "parameter_unit") if name in data.coordinates}
+    return forms | {name: Form(("parameter",), "text", "") for name in of_derivatives}
 
 
 def statistics_of(name: str) -> list[str]:
