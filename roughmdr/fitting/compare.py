@@ -46,8 +46,8 @@ class Candidate(NamedTuple):
 
     @property
     def squares(self) -> float:
-        """The sum of squares; inf where there is no fit."""
-        return float(np.sum(np.square(self.fit.found.deviations))) if self.fit else math.inf
+        """The sum of squares of the measured points; inf where there is no fit."""
+        return float(np.sum(np.square(self.fit.found.residuals))) if self.fit else math.inf
 
     @property
     def tabor(self) -> float:
@@ -104,9 +104,9 @@ def best_model(scene: Scene, curve: MeasuredCurve, free: list[str], known: Known
         reasons = "; ".join(f"{each.name}: {each.reason}" for each in candidates if each.reason)
         raise SceneError(f"scene: no adhesion model: {reasons}")
     points = curve.load.size
-    _, closest, *_ = min(fits, key=lambda each: float(np.sum(np.square(each.found.deviations))))
+    closest = min((each.found for each in fits), key=lambda found: float(np.sum(np.square(found.residuals))))
     left = np.linalg.qr(closest.slopes[:points])[0]
-    effective = noise_correlation(curve, left, closest.deviations[:points]).effective(points)
+    effective = noise_correlation(curve, left, closest.residuals).effective(points)
     aicc = np.array([each.aicc(points, effective, stated=curve.error is not None) for each in candidates])
     if not np.isfinite(least := aicc[fitted].min()):
         raise SceneError(f"{curve.origin}: has {effective:.3g} independent points, too few to tell models apart")
