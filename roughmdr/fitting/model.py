@@ -220,7 +220,7 @@ class Model:
         return self._last
 
     def point_at(self, x: Floats) -> Point:
-        """Return likewise the law, which is not kept."""
+        """Return the law with these parameters, which is not kept."""
         nothing = Point(x, np.full(self.curve.load.size + len(self._from_priors(x)), np.inf), 0.0, (), np.empty(0))
         try:
             load, error, touching, rule = self.load(x, self.curve.values)

@@ -3,12 +3,12 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from roughmdr.expected.compute import KERNEL_ERROR
 from roughmdr.fitting.model import Model, Point
 from roughmdr.fitting.parameters import length_scale
 from roughmdr.fitting.spring import Spring
 from roughmdr.numerics.arguments import Floats
 
-_LEAST_ERROR = 1e-12  # relative error of the force of a contact
 _LONGEST_STEP = 0.01  # largest change of x in differences
 _JUMP = 0.5  # ratio of the differences to both sides of x, beyond which one of them holds a jump
 
@@ -71,7 +71,7 @@ def _spring(model: Model, x: Floats) -> Spring:
 
 def _step(middle: Point) -> float:
     """Return the best step of differences, the cube root of the error of the law."""
-    return float(min(max(middle.error, _LEAST_ERROR) ** (1.0 / 3.0), _LONGEST_STEP))
+    return float(min(max(middle.error, KERNEL_ERROR) ** (1.0 / 3.0), _LONGEST_STEP))
 
 
 def _difference(model: Model, here: Floats, sides: list[Floats], step: float) -> Floats:
