@@ -5,28 +5,22 @@ boundary elements.
 """
 
 import math
-import warnings
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any
 
 import numpy as np
 import xarray as xr
 
 import roughmdr as rm
-from roughmdr.elements.half_space import BoundaryElements
-from roughmdr.ensemble.maps.height_map import HeightMap
-from roughmdr.ensemble.maps.summits import find_summits
 from roughmdr.numerics.arguments import Floats
 from studies.comparison import HELD, PAIRS, draw_stated, held, in_cases, law_of, panels
-from studies.hills.maps import SIDE, MapCase, hills_of
-from studies.study import Study, in_two_processes, table
+from studies.hills.maps import MapCase
+from studies.study import Figure, Study, in_two_processes, table, without_limits
+from studies.surfaces import Surface, surface_of
 from studies.versus_adhesive_bem import by_elements
 from studies.versus_adhesive_bem.cases import FLATTER, PRESSED, STATED, flat_law
 from studies.versus_adhesive_bem.cases import Case as Adhering
-from studies.versus_bem.ensembles import SIZE, Case
+from studies.versus_bem.ensembles import Case
 from studies.versus_bem.ensembles import separations as of_asperities
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 SEED = 2027
 """Seed of the surfaces; those of seed 7 have set the constants."""
@@ -52,19 +46,6 @@ _WORDS = {
 }
 
 
-class Surface(NamedTuple):
-    """A surface, and the asperities that stand for it by their group."""
-
-    ensembles: dict[str, xr.Dataset]
-    height: Floats
-    """[side], on the grid of boundary elements."""
-    side: float
-    """[m]"""
-    periodic: bool
-    separation: Floats
-    """Where its contact fractions are about ``FRACTIONS`` [m]."""
-
-
 def draw_case(seed: int, number: int, points: int) -> tuple[Case | MapCase, bool]:
     """Return a surface at random, and whether it repeats: of three one is a map, of these every second one is cut."""
     chance = np.random.default_rng([seed, number])
@@ -81,46 +62,26 @@ def draw_case(seed: int, number: int, points: int) -> tuple[Case | MapCase, bool
     return Case(placement, shape, count, roughness, points, int(chance.integers(1000))), True
 
 
-def surface_of(case: Case | MapCase, periodic: bool) -> Surface:
-    """Return the surface of a case."""
-    if isinstance(case, Case):
-        ensemble, height, _ = case.build()
-        along = of_asperities(ensemble, FRACTIONS)
-        return Surface({"asperities": ensemble}, height / SIZE, SIZE, True, along[np.isfinite(along)])
-    height, side = case.height(16 if case.bandwidth <= 16 else 12), SIDE
-    if not periodic:
-        kept = int(0.7 * height.shape[0]) // 4 * 4
-        height, side = height[:kept, :kept], SIDE * kept / height.shape[0]
-    surface = HeightMap(height, side / height.shape[0], side / height.shape[1], periodic)
-    found = {"summits": find_summits(surface), "hills": hills_of(surface)}
-    height = height / side
-    along = side * _where_reached(height[::4, ::4], periodic)
-    return Surface({name: each.labelled().to_xarray() for name, each in found.items()}, height, side, periodic, along)
+def separations_of(surface: Surface) -> Floats:
+    """Return separations [m] at which the contact fractions of a surface are about ``FRACTIONS``."""
+    if "asperities" in surface.ensembles:
+        along = of_asperities(surface.ensembles["asperities"], FRACTIONS)
+    else:
+        along = surface.side * surface.separations(FRACTIONS, 24, np.nan)
+    return along[np.isfinite(along)]
 
 
-def _where_reached(height: Floats, periodic: bool) -> Floats:
-    """Return the separations [side] at which boundary elements on a coarse grid reach the contact fractions."""
-    grid = BoundaryElements(height, np.ones(2), periodic=periodic)
-    top, mean = float(height.max()), float(height.mean())
-    tried = top - (top - mean) * np.linspace(0.03, 0.97, 24) ** 1.5
-    area = np.array([grid.patches().area if np.isfinite(grid.press(h)) else np.nan for h in tried.tolist()])
-    known = area > 0.0
-    along = np.interp(np.log(FRACTIONS), np.log(area[known]), tried[known], left=np.nan, right=np.nan)
-    return np.asarray(along[np.isfinite(along)])
-
-
-def truth_of(surface: Surface) -> tuple[dict[str, Floats], dict[str, Floats]]:
+def truth_of(surface: Surface, separation: Floats) -> tuple[dict[str, Floats], dict[str, Floats]]:
     """Return quantities by boundary elements for E* = 1 Pa, and their errors, where the grid resolves contacts."""
-    grid = BoundaryElements(surface.height, np.ones(2), periodic=surface.periodic)
-    rows = []
-    for h in (surface.separation / surface.side).tolist():
+    grid, rows = surface.elements(), []
+    for h in (separation / surface.side).tolist():
         force, patches = grid.press(h), grid.patches()
         rows.append((force, patches.area, grid.stiffness(h), patches.radius_sum, patches.contacts))
     force, area, stiffness, radius_sum, contacts = np.array(rows).T
     found = {
         "pressure": force, "contact_fraction": area, "stiffness": surface.side * stiffness,
         "conductance_radius": 0.5 * surface.side * stiffness, "contact_radius_sum": surface.side * radius_sum,
-        "separation": surface.separation,
+        "separation": separation,
     }  # fmt: skip
     points = np.sqrt(area / (math.pi * np.maximum(contacts, 1.0))) * surface.height.shape[0]
     resolved = (points >= _LEAST_POINTS) & (force > 0.0)
@@ -159,18 +120,17 @@ def law_to_the_end(ensemble: xr.Dataset, separation: Floats, interaction: Any) -
 
 def compare(task: tuple[int, int, int]) -> list[dict[str, Any]]:
     """Return the errors of all models of a surface, by seed, number and points: of each the row of ``_WORDS``."""
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", rm.LimitWarning)
+    with without_limits():
         surface = surface_of(*draw_case(*task))
-    truth, unknown = truth_of(surface)
-    rows = []
+    separation, rows = separations_of(surface), []
+    truth, unknown = truth_of(surface, separation)
     for group, ensemble in surface.ensembles.items():
         for model, interaction in _MODELS.items():
             alone = interaction in (None, "mean_field")
             if (group == "hills" and model != "order 2") or (alone and not surface.periodic):
                 continue
             asked = {**interaction, "boundary": "free"} if not surface.periodic else interaction
-            if law := law_to_the_end(ensemble, path_of(surface.separation), asked):
+            if law := law_to_the_end(ensemble, path_of(separation), asked):
                 cut = "" if surface.periodic else "cut "
                 labels = {"group": f"{cut}{group}", "model": model, "surface": task[1]}
                 rows.append(labels | _row(law, truth, unknown, surface.side))
@@ -253,7 +213,7 @@ def methods(result: xr.Dataset) -> dict[str, Any]:
     return {name: np.array(names) == name for name in dict.fromkeys(names)}
 
 
-def draw(result: xr.Dataset) -> "Figure":
+def draw(result: xr.Dataset) -> Figure:
     """Draw stated over true errors of quantities at given pressure."""
     asked = [f"{quantity} at given pressure" for quantity in ("contact_fraction", "stiffness", "separation")]
     groups = result["group"].values

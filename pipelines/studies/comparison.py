@@ -52,6 +52,13 @@ def _padded(rows: list[Any]) -> Floats:
     return found
 
 
+def of(result: xr.Dataset, **labels: str) -> xr.Dataset:
+    """Return the cases of a result with these labels."""
+    chosen = np.all([result[name].to_numpy() == label for name, label in labels.items()], axis=0)
+    (dim,) = result[next(iter(labels))].dims
+    return result.isel({dim: np.flatnonzero(chosen)})
+
+
 def rms(values: xr.DataArray | Floats) -> float:
     """Return the root mean square of what is known."""
     known = np.asarray(values)[np.isfinite(values)]

@@ -59,7 +59,7 @@ def test_stiffness_is_minus_the_slope_of_the_force() -> None:
     height = MapCase(0.8, 8, 11).height(4)
     h = 1.2 * float(height.std())
     nearby = h * (1.0 + np.array([0.05, 0.0, -0.05]))
-    for pressed in (by_elements(height, nearby), by_persson(square(height), nearby, 0.45)):
+    for pressed in (by_elements(square(height), nearby), by_persson(square(height), nearby, 0.45)):
         slope = (pressed.force[2] - pressed.force[0]) / (0.1 * h)
         assert pressed.stiffness[0] < 1.02 * slope
         assert pressed.stiffness[0] == pytest.approx(slope, rel=0.3)

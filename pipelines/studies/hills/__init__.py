@@ -3,14 +3,11 @@
 All methods press a map at the same separations, those at which 0.3 to 20 % are in contact.
 """
 
-import warnings
 from itertools import product
-from typing import TYPE_CHECKING
 
 import numpy as np
 import xarray as xr
 
-import roughmdr as rm
 from roughmdr.ensemble.maps.summits import find_summits
 from studies.comparison import in_cases, panels, percent, rms
 from studies.hills.convergence import QUICK_TRIALS, TRIALS, draw_convergence, measure_convergence, report_convergence
@@ -33,11 +30,7 @@ from studies.hills.maps import (
     square,
 )
 from studies.hills.measured_maps import measure_files, report_files
-from studies.study import Study, named, table
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
+from studies.study import Axes, Figure, Study, named, table, without_limits
 
 COARSE = (2, 3, 4)
 PERSSON = {"Persson, gamma 0.45": 0.45, "Persson, gamma 1": 1.0}
@@ -56,24 +49,22 @@ _CURVES = METHODS[:4]
 
 def press(case: MapCase) -> list[Pressed]:
     """Return the solution of fine boundary elements, and then that of each method."""
-    height = case.height(POINTS)
-    separation, surface = separations(case), square(height)
+    separation, surface = separations(case), square(case.height(POINTS))
     unknown = np.full(separation.size, np.nan)
     nothing = Pressed(unknown, unknown, unknown, np.nan)
     return [
-        by_elements(height, separation),
+        by_elements(surface, separation),
         by_asperities(surface, separation, find_summits, None),
         by_asperities(surface, separation, find_summits, PAIRS),
         by_asperities(surface, separation, hills_of, PAIRS),
         *(by_persson(surface, separation, gamma) if case.anisotropy == 1.0 else nothing for gamma in PERSSON.values()),
-        *(by_elements(case.height(points), separation) for points in COARSE),
+        *(by_elements(square(case.height(points)), separation) for points in COARSE),
     ]
 
 
 def measure(quick: bool) -> xr.Dataset:
     """Press all maps, or a few."""
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", rm.LimitWarning)
+    with without_limits():
         press(QUICK[0])  # compiles
         parts = [measure_maps(QUICK if quick else [*ISOTROPIC, *ANISOTROPIC]), measure_convergence(quick)]
         return xr.merge([*parts, measure_grids(quick), measure_files(quick)])
@@ -157,7 +148,7 @@ The force by contact fraction, r.m.s.:
 """
 
 
-def draw(result: xr.Dataset) -> "Figure":
+def draw(result: xr.Dataset) -> Figure:
     """Draw the errors of the force over the contact fraction, and over the run time."""
     from matplotlib.lines import Line2D
 
@@ -179,7 +170,7 @@ def draw(result: xr.Dataset) -> "Figure":
     return figure
 
 
-def _draw_errors(panel: "Axes", own: xr.Dataset) -> None:
+def _draw_errors(panel: Axes, own: xr.Dataset) -> None:
     """Draw the errors of the force on maps of a kind over the contact fraction."""
     errors, fraction = errors_of(own), 100.0 * own["fraction"].to_numpy()
     for method in _CURVES:

@@ -1,7 +1,6 @@
 """The force of hills over what it hangs on: points of the map, contact radii of a hill, and noise of the heights."""
 
 from functools import partial
-from typing import TYPE_CHECKING
 
 import numpy as np
 import xarray as xr
@@ -13,10 +12,7 @@ from roughmdr.ensemble.maps.summits import find_summits
 from roughmdr.numerics.arguments import Floats
 from studies.comparison import Variable, in_cases, panels, percent, rms
 from studies.hills.maps import PAIRS, POINTS, WORDS, MapCase, by_asperities, by_elements, hills_of, separations, square
-from studies.study import named, table
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
+from studies.study import Figure, named, table
 
 TRIALS = [MapCase(hurst, 16, 12) for hurst in (0.3, 0.5, 0.8)]
 QUICK_TRIALS = [MapCase(0.3, 8, 11), MapCase(0.8, 8, 11)]
@@ -68,7 +64,9 @@ def measure_convergence(quick: bool) -> xr.Dataset:
 def _measure(case: MapCase, finest_elements: int) -> dict[str, Floats]:
     """Return the numbers of one map, by the names of variables."""
     separation, height = separations(case), case.height(POINTS)
-    elements = np.array([by_elements(case.height(points), separation).numbers for points in (POINTS, finest_elements)])
+    elements = np.array(
+        [by_elements(square(case.height(points)), separation).numbers for points in (POINTS, finest_elements)]
+    )
     white = np.random.default_rng([case.seed, round(10 * case.hurst), case.bandwidth, 1]).standard_normal(height.shape)
     shaken = [square(height + noise * height.std() * white) for noise in (0.0, *NOISE)]
 
@@ -147,7 +145,7 @@ White noise added to a map with {POINTS} points a wave moves the force by, r.m.s
 {table(["noise over r.m.s. height", *(percent(n, 0) for n in NOISE)], of_noise)}"""
 
 
-def draw_convergence(result: xr.Dataset) -> "Figure":
+def draw_convergence(result: xr.Dataset) -> Figure:
     """Draw the force of hills over points a wave and contact radii, and what noise moves it by."""
     figure, (of_points, of_scales, of_noise) = panels(13.8, 4.6, 3)
     points, scales, noise = by_points(result), by_scales(result), by_noise(result)

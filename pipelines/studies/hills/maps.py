@@ -96,20 +96,34 @@ def hills_of(surface: HeightMap, scales: int = SCALES) -> Ensemble:
     return find_hills(surface, find_summits(surface), scales)
 
 
-def by_elements(height: Floats, separation: Floats, *, stiffness: bool = True) -> Pressed:
+def by_elements(surface: HeightMap, separation: Floats, *, stiffness: bool = True) -> Pressed:
     """Return the solution of boundary elements at separations [m]; one after the other, each from the last."""
     started = time.perf_counter()
-    elements = BoundaryElements(height / SIDE, np.array([1.0, 1.0]))
+    elements, side = elements_of(surface)
     seconds = time.perf_counter() - started
     found = np.full((len(QUANTITIES), separation.size), np.nan)
-    for i, h in enumerate((separation / SIDE).tolist()):
+    for i, h in enumerate((separation / side).tolist()):
         started = time.perf_counter()
-        found[0, i] = elements.press(h) * SIDE * SIDE
-        found[1, i] = elements.patches().area
+        found[0, i] = elements.press(h) * side * side
+        found[1, i] = elements.patches().area / float(elements.sides.prod())
         seconds += time.perf_counter() - started
         if stiffness and i % STIFFNESS_EACH == 0:
-            found[2, i] = elements.stiffness(h) * SIDE
+            found[2, i] = elements.stiffness(h) * side
     return Pressed(found[0], found[1], found[2], seconds)
+
+
+def elements_of(surface: HeightMap) -> tuple[BoundaryElements, float]:
+    """Return boundary elements of a map over its side, and the side [m]."""
+    sides = np.array([surface.dx, surface.dy]) * surface.height.shape
+    return BoundaryElements(surface.height / sides[0], sides / sides[0], periodic=surface.periodic), float(sides[0])
+
+
+def where_reached(elements: BoundaryElements, tried: Floats, fractions: Floats, **ends: float | None) -> Floats:
+    """Return where elements reach contact fractions, between the separations tried; beyond those the ``ends``."""
+    area = np.array([elements.patches().area if elements.press(h) > 0.0 else np.nan for h in tried.tolist()])
+    known = area > 0.0
+    whole = float(elements.sides.prod())
+    return np.asarray(np.interp(np.log(fractions), np.log(area[known] / whole), tried[known], **ends))
 
 
 def by_asperities(
@@ -153,6 +167,5 @@ def separations(case: MapCase) -> Floats:
     """Return separations [m] of the contact fractions, by coarse boundary elements."""
     height = case.height(_POINTS)
     tried = np.linspace(0.98 * float(height.max()), 0.2 * float(height.std()), _SEARCHED)
-    found = by_elements(height, tried, stiffness=False)
-    known = found.contact_fraction > 0.0
-    return np.asarray(np.interp(np.log(FRACTIONS), np.log(found.contact_fraction[known]), tried[known]))
+    elements, side = elements_of(square(height))
+    return side * where_reached(elements, tried / side, FRACTIONS)

@@ -9,16 +9,14 @@ from pathlib import Path
 import numpy as np
 import xarray as xr
 
-from roughmdr.elements.half_space import BoundaryElements
 from roughmdr.ensemble.maps.detrend import remove_trend
 from roughmdr.ensemble.maps.height_map import HeightMap
 from roughmdr.ensemble.maps.hills.find import wavelength
 from roughmdr.ensemble.maps.read_map import read_map
 from roughmdr.ensemble.maps.resolution import MAX_HILLS_ERROR, hills_error
 from roughmdr.ensemble.maps.summits import find_summits
-from roughmdr.numerics.arguments import Floats
 from studies.comparison import percent, rms
-from studies.hills.maps import FRACTIONS, QUANTITIES, STIFFNESS_EACH, by_asperities, hills_of
+from studies.hills.maps import FRACTIONS, QUANTITIES, by_asperities, by_elements, elements_of, hills_of, where_reached
 from studies.study import named, table
 
 FOLDER = "ROUGHMDR_SURFACES"
@@ -55,14 +53,16 @@ def measure_files(quick: bool) -> xr.Dataset:
 
 def _measure(surface: HeightMap) -> xr.Dataset:
     """Press one map by each method."""
-    separation = _separations(surface)
-    true = _by_elements(surface, separation)
+    elements, side = elements_of(surface)
+    tried = float(elements.height.max()) - np.linspace(0.02, 1.0, _SEARCHED) * float(np.ptp(elements.height))
+    separation = side * where_reached(elements, tried, FRACTIONS)
     found = [
+        by_elements(surface, separation),
         by_asperities(surface, separation, find_summits, None),
         by_asperities(surface, separation, find_summits, _ALONE),
         by_asperities(surface, separation, hills_of, _ALONE),
     ]
-    numbers, over = np.array([true, *(each.numbers for each in found)]), ("surface_solver", "fraction")
+    numbers, over = np.array([each.numbers for each in found]), ("surface_solver", "fraction")
     points, length = surface.height.shape[0], wavelength(surface)
     return xr.Dataset(
         {
@@ -73,22 +73,6 @@ def _measure(surface: HeightMap) -> xr.Dataset:
         },
         {"surface_solver": ["free elements", *FREE_METHODS]},
     )
-
-
-def _separations(surface: HeightMap) -> Floats:
-    """Return separations [m] of the contact fractions."""
-    tried = float(surface.height.max()) - np.linspace(0.02, 1.0, _SEARCHED) * float(np.ptp(surface.height))
-    return np.asarray(np.interp(np.log(FRACTIONS), np.log(_by_elements(surface, tried)[1]), tried))
-
-
-def _by_elements(surface: HeightMap, separation: Floats) -> Floats:
-    """Return the quantities [quantity, separation] by boundary elements of the map alone."""
-    sides = surface.dx * np.array(surface.height.shape)
-    elements, numbers = BoundaryElements(surface.height, sides, periodic=False), []
-    for i, h in enumerate(separation.tolist()):
-        force, fraction = elements.press(h), elements.patches().area / float(sides.prod())
-        numbers.append((force, fraction, np.nan if i % STIFFNESS_EACH else elements.stiffness(h)))
-    return np.transpose(numbers)
 
 
 def report_files(result: xr.Dataset) -> str:

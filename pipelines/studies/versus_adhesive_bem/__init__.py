@@ -1,7 +1,7 @@
 """Adhesive asperities by models and by boundary elements on two grids, along the same path."""
 
 import time
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import xarray as xr
@@ -9,13 +9,9 @@ from oracles.adhesive_elements import AdhesiveMap
 
 from roughmdr.numerics.arguments import Floats
 from studies.comparison import in_cases, panels
-from studies.study import Study, table
+from studies.study import Axes, Figure, Study, table
 from studies.versus_adhesive_bem.cases import DETACHED, MODELS, WORK, Case, law
 from studies.versus_bem.ensembles import distances, height_map
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
 
 _LABELS = {"independent": "independent", "first": "pairs, order 1", "second": "pairs, order 2"}
 _COLOURS = {"independent": "0.6", "first": "#1b6ca8", "second": "#c8553d"}
@@ -162,7 +158,7 @@ def judge(case: xr.Dataset, source: str) -> Judged:
     )
 
 
-def _curves(panel: "Axes", case: xr.Dataset, quantity: str, share: float) -> None:
+def _curves(panel: Axes, case: xr.Dataset, quantity: str, share: float) -> None:
     """Draw a quantity over the separation: loading hollow and thin, unloading full."""
     case = case.isel(step=np.flatnonzero(case["separation"].notnull().to_numpy()))
     separation = case["separation"].to_numpy()
@@ -177,7 +173,7 @@ def _curves(panel: "Axes", case: xr.Dataset, quantity: str, share: float) -> Non
     panel.set(xlabel="separation from the highest asperity [a0²/R]")
 
 
-def _by_tabor(panel: "Axes", result: xr.Dataset) -> None:
+def _by_tabor(panel: Axes, result: xr.Dataset) -> None:
     """Draw the largest error of the force over the Tabor number, by ensemble and model; one in a patch for comparison.
 
     Its neighbours, the periodic images, are so far away that it shows the range alone.
@@ -200,7 +196,7 @@ def _by_tabor(panel: "Axes", result: xr.Dataset) -> None:
     panel.legend(fontsize=8)
 
 
-def draw(result: xr.Dataset) -> "Figure":
+def draw(result: xr.Dataset) -> Figure:
     """Draw force and contact area over the separation of one case, and errors over the Tabor number of all."""
     figure, (left, middle, right) = panels(16, 5.2, 3)
     several = result.isel(case=np.flatnonzero(result["asperities"].to_numpy() > 1))
