@@ -9,8 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import xarray as xr
-from matplotlib.figure import Figure
-from studies.study import Study, named
+from studies.study import Figure, Study, blank, named
 
 import roughmdr
 from benchmarks.batch import tables
@@ -23,13 +22,11 @@ from roughmdr.scene import read
 SCENES = {
     "16 x 1000": [],
     "256 x 2000": ["batch.realizations=256", "asperities.count=2000"],
-    "sweep": [
-        *("batch.realizations=32", "asperities.count=2000", "sweep.adhesion.work=[0.01,0.02,0.05]"),
-        "sweep.asperities.height.std={logspace=['0.1 um','10 um'],num=5}",
-    ],
+    "sweep": ["batch.realizations=32", "asperities.count=2000", "sweep.adhesion.work=[0.01,0.02,0.05]",
+              "sweep.asperities.height.std={logspace=['0.1 um','10 um'],num=5}"],
     "4 x 1e6": ["batch.realizations=4", "asperities.count=1000000"],
     "80000 steps": ["batch.realizations=64", "asperities.count=200", "path.separation.steps=40000"],
-}
+}  # fmt: skip
 """Changes of the starter scene."""
 _STARTER = Path(roughmdr.__file__).with_name("starter.toml")
 
@@ -57,7 +54,7 @@ def measure(quick: bool) -> xr.Dataset:
 
 def draw(result: xr.Dataset) -> Figure:
     """Draw the foreseen over the measured, for time and memory; the band is a factor of two."""
-    figure = Figure(figsize=(7, 3.6), layout="constrained")
+    figure = blank(7, 3.6)
     panel = figure.subplots()
     x = np.arange(result.sizes["scene"])
     for shift, name in ((-0.1, "time"), (0.1, "memory")):

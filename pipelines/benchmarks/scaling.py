@@ -4,51 +4,122 @@ All figures come from one run, since ratios hold where times drift.
 """
 
 import math
-import time
 from collections.abc import Callable
 from functools import partial
+from typing import Any
 
 import numpy as np
 import xarray as xr
-from matplotlib.figure import Figure
 from oracles.plain_sums import Sums, with_brentq, with_numpy
 from scipy.optimize import brentq
-from studies.study import Study, named
+from studies.comparison import in_cases
+from studies.study import Figure, Study, blank, named, timed
 
 import roughmdr as rm
 from benchmarks.batch import by_cell, tables
-from benchmarks.child import load_separation
+from benchmarks.child import HEIGHT, load_separation
 from benchmarks.process import in_new_process
-from benchmarks.sums import (
-    MODULUS,
-    SHAPES,
-    TOTALS,
-    WORK,
-    by_law,
-    by_the_sum,
-    cost_of,
-    each,
-    ensemble_of,
-    loading,
-    section,
-    split_cost,
-)
 from benchmarks.tasks import by_workers
+from roughmdr.aggregate import loop, totals
 from roughmdr.ensemble import Ensemble
 from roughmdr.kernels.adhesion import Adhesion
+from roughmdr.kernels.choose import choose
+from roughmdr.loading.staircase import no_memory, staircase
+from roughmdr.numerics.arguments import Floats
 from roughmdr.numerics.jit import compiled
 from roughmdr.shapes import SHAPES as SHAPE_OF
 from roughmdr.shapes import PowerLaw, ProfileShape, Shape
 from roughmdr.shapes.kappa import kappa
 
+MODULUS, WORK = 4e6, 0.05
+RADIUS = {"distribution": "lognormal", "mean": "50 um", "std": "5 um"}
+TOTALS = {totals.FORCE, totals.AREA, totals.COUNT, totals.STIFFNESS, totals.ERROR}
+STATE = {totals.FORCE, totals.RADIUS, totals.STIFFNESS}
+_R = np.linspace(0.0, 1e-5, 100)
+SHAPES: dict[str, dict[str, Any]] = {
+    "power_law": {"exponent": {"distribution": "uniform", "loc": 1.2, "scale": 3.0}, "width": "10 um", "rise": "1 um"},
+    "sphere": {"radius": "50 um"},
+    "truncated_cone": {"slope": 0.1, "flat_radius": "2 um"},
+    "truncated_paraboloid": {"radius": "50 um", "flat_radius": "2 um"},
+    "rounded_cone": {"slope": 0.1, "blend_radius": "5 um"},
+    "capped_paraboloid": {"radius": "50 um", "cap_radius": "90 um", "blend_radius": "5 um"},
+    "rounded_punch": {"flat_radius": "2 um", "edge_radius": "50 um"},
+    "tabulated": {"r": _R.tolist(), "f": (1e-4 * _R + _R**2 / 1e-4).tolist()},
+}
+SLOPE = {"distribution": "uniform", "loc": 0.08, "scale": 0.04}
+ALL: dict[str, dict[str, Any]] = {
+    "paraboloid": {"radius": RADIUS},
+    "cone": {"slope": SLOPE},
+    "flat_punch": {"radius": {"distribution": "uniform", "loc": 1e-6, "scale": 2e-6}},
+    **SHAPES,
+    "sphere": {"radius": RADIUS},
+    "truncated_cone": {"slope": SLOPE, "flat_radius": "2 um"},
+    "truncated_paraboloid": {"radius": RADIUS, "flat_radius": "2 um"},
+    "rounded_cone": {"slope": SLOPE, "blend_radius": "5 um"},
+    "rounded_punch": {"flat_radius": "2 um", "edge_radius": RADIUS},
+}
+LAWS = ("none", "jkr", "dugdale")
+_SLOW = {("tabulated", "dugdale"): 0.001}
+"""Share of the asperities that is measured; of all others with a range of adhesion a twentieth."""
 ASPERITIES = {False: 1_000_000, True: 20_000}
 TABOR = (0.1, 1.0, 10.0, 100.0)
 _BRENTQ = 300, 200  # asperities, or contacts of one, that a root finder is given
+_SHAPE_COSTS = {
+    "state_time": ("time per asperity and step", "ns"),
+    "asperity_time": ("time per asperity, once", "ns"),
+    "path_time": ("time per asperity and step over 200 steps each way, all included", "ns"),
+    "state_time_brentq": ("time per asperity and step", "ns"),
+    "profile_time": ("time to set up the profiles", "s"),
+}
 _BARS = {
     "state_time": "one more step",
     "path_time": "200 steps each way, set-up included",
     "state_time_brentq": "scipy brentq",
 }
+
+
+def section(count: int, shape: str = "paraboloid", **parameters: Any) -> dict[str, Any]:
+    """Return the asperities of a scene."""
+    given = {"source": "random", "shape": shape, "count": count, "patch": "1 m", "height": HEIGHT}
+    return {**given, **(parameters or {"radius": RADIUS})}
+
+
+def ensemble_of(*args: Any, **parameters: Any) -> Ensemble:
+    """Return the asperities of a ``section``."""
+    return Ensemble.from_dataset(rm.generate(section(*args, **parameters), seed=1))
+
+
+def loading(steps: int = 200) -> Floats:
+    """Return separations [m]."""
+    return np.linspace(4e-6, -0.5e-6, steps)
+
+
+def each(cost: tuple[int, float]) -> float:
+    """Return the time of a visit [ns] from the visits of an action and its time [s]."""
+    return 1e9 * cost[1] / cost[0]
+
+
+def by_the_sum(ensemble: Ensemble, adhesion: Adhesion, repeats: int, rows: set[int], steps: int) -> tuple[int, float]:
+    """Return visits and time [s] of the package's sum there and back, all included."""
+    columns, path = ensemble.columns, np.concatenate([loading(steps), loading(steps)[::-1]])
+    kernels = choose(ensemble.shape, adhesion, columns[2])
+    memory = staircase(path) if adhesion.work else no_memory(path)
+
+    def visits() -> int:
+        return loop.sum_over_asperities(kernels, ensemble.height, columns, MODULUS, adhesion, path, memory, rows)[2]
+
+    visits()
+    return timed(visits, repeats)
+
+
+def split_cost(ensemble: Ensemble, adhesion: Adhesion, repeats: int) -> tuple[float, float, tuple[int, float]]:
+    """Return the times [ns] of delta -> (P, a, k) and of preparing an asperity, and the cost of 200 steps each way.
+
+    The first two are told apart by paths of few steps and of many.
+    """
+    short, long = (by_the_sum(ensemble, adhesion, repeats, STATE, steps) for steps in (200, 2000))
+    state = (long[1] - short[1]) / (long[0] - short[0])
+    return 1e9 * state, 1e9 * (short[1] - state * short[0]) / ensemble.height.size, short
 
 
 def scalar_g(shape: Shape) -> Callable[[float], float]:
@@ -63,14 +134,12 @@ def scalar_g(shape: Shape) -> Callable[[float], float]:
     return lambda a: rise * mdr_profile(t_of_radius(a, width, numbers), numbers)[2]
 
 
-def by_brentq(ensemble: Ensemble) -> tuple[float, int]:
+def by_brentq(ensemble: Ensemble) -> tuple[int, float]:
     """Return the cost of a root finder on delta = g(a) - dl(a) of the first asperity."""
     first = {name: float(column[0]) for name, column in ensemble.parameters.items()}
     shape: Shape = ensemble.shared_profile or SHAPE_OF[ensemble.shape](**first)
-    fold, g = (
-        float(rm.pull_off(shape, effective_modulus=MODULUS, work=WORK, control="displacement").contact_radius),
-        scalar_g(shape),
-    )
+    off = rm.pull_off(shape, effective_modulus=MODULUS, work=WORK, control="displacement")
+    fold, g = float(off.contact_radius), scalar_g(shape)
     g(fold)  # compiled before the clock runs
     top = 0.999999 * shape.end if shape.name == "sphere" else 1e3 * fold
     depths = np.linspace(1e-8, 1e-6, _BRENTQ[1])
@@ -83,7 +152,7 @@ def by_brentq(ensemble: Ensemble) -> tuple[float, int]:
             brentq(indentation, fold, top, args=(delta,), xtol=1e-15 * fold)
         return depths.size
 
-    return cost_of(visits)
+    return timed(visits)
 
 
 def by_method(count: int, repeats: int) -> xr.Dataset:
@@ -97,7 +166,7 @@ def by_method(count: int, repeats: int) -> xr.Dataset:
     cost = []
     for work in (0.0, WORK):
         package = by_the_sum(large, Adhesion(work), repeats, TOTALS, 200)
-        plain = [cost_of(partial(visits, *of, work)) for of in ((with_numpy, count), (with_brentq, _BRENTQ[0]))]
+        plain = [timed(partial(visits, *of, work)) for of in ((with_numpy, count), (with_brentq, _BRENTQ[0]))]
         cost.append([each(one) for one in (package, *plain)])
     arguments = {"effective_modulus": MODULUS, "work": WORK, "unload": True}
     seconds, size = in_new_process(load_separation, section(count), loading().tolist(), arguments)
@@ -110,14 +179,19 @@ def by_method(count: int, repeats: int) -> xr.Dataset:
     return xr.Dataset(variables, coords, {"asperities": count})
 
 
+def of_range(tabor: float) -> Adhesion:
+    """Return adhesion of finite range by the Tabor number of 50 um."""
+    one = rm.tabor(rm.Paraboloid(radius=50e-6), effective_modulus=MODULUS, work=WORK, strength=1.0)
+    return Adhesion(WORK, "dugdale", tabor / one)
+
+
 def by_range(count: int, repeats: int) -> xr.Dataset:
     """Measure paraboloids under adhesion of finite range, by their Tabor number."""
     ensemble = ensemble_of(count)
-    one = rm.tabor(rm.Paraboloid(radius=50e-6), effective_modulus=MODULUS, work=WORK, strength=1.0)
-    found = [split_cost(ensemble, Adhesion(WORK, "dugdale", tabor / one), repeats) for tabor in TABOR]
+    found = [split_cost(ensemble, of_range(tabor), repeats) for tabor in TABOR]
     variables = {
         "dugdale_state_time": ("tabor", [state for state, *_ in found], named("time per asperity and step", "ns")),
-        "dugdale_time": ("tabor", [short[0] for *_, short in found], named("200 steps each way", "s")),
+        "dugdale_time": ("tabor", [short[1] for *_, short in found], named("200 steps each way", "s")),
     }
     return xr.Dataset(variables, {"tabor": ("tabor", list(TABOR), named("Tabor number"))}, {"dugdale_count": count})
 
@@ -127,20 +201,28 @@ def by_shape(count: int, repeats: int) -> xr.Dataset:
     rows = []
     for shape, parameters in SHAPES.items():
         ensemble = ensemble_of(count, shape, **parameters)
-        started = time.perf_counter()
-        _ = ensemble.columns  # for a table: its pieces
-        profile = time.perf_counter() - started
+        _, profile = timed(partial(getattr, ensemble, "columns"))  # for a table: its pieces
         state, before, short = split_cost(ensemble, Adhesion(WORK), repeats)
         rows.append((state, before, each(short), each(by_brentq(ensemble)), profile))
-    names = {
-        "state_time": named("time per asperity and step", "ns"),
-        "asperity_time": named("time per asperity, once", "ns"),
-        "path_time": named("time per asperity and step over 200 steps each way, all included", "ns"),
-        "state_time_brentq": named("time per asperity and step", "ns"),
-        "profile_time": named("time to set up the profiles", "s"),
+    return xr.Dataset(in_cases(_SHAPE_COSTS, rows, "shape"), {"shape": list(SHAPES)})
+
+
+def by_law(count: int, repeats: int) -> xr.Dataset:
+    """Measure every shape with every law, and the JKR paraboloid in the same run; Tabor number 1 of 50 um."""
+    laws = {"none": Adhesion(), "jkr": Adhesion(WORK), "dugdale": of_range(1.0)}
+    found = np.full((len(ALL), len(LAWS)), np.nan)
+    reference = each(by_the_sum(ensemble_of(count), laws["jkr"], repeats, TOTALS, 200))
+    for i, (shape, parameters) in enumerate(ALL.items()):
+        for j, law in enumerate(LAWS):
+            share = _SLOW.get((shape, law), 0.05 if law == "dugdale" and shape != "paraboloid" else 1.0)
+            ensemble = ensemble_of(max(20, int(share * count)), shape, **parameters)
+            found[i, j] = each(by_the_sum(ensemble, laws[law], repeats, TOTALS, 200))
+    over = ("law_shape", "law")
+    variables = {
+        "law_time": (over, found, named("time per contact and step", "ns")),
+        "law_ratio": (over, found / reference, named("time over that of the JKR paraboloid")),
     }
-    variables = {name: ("shape", column, names[name]) for name, column in zip(names, np.array(rows).T, strict=True)}
-    return xr.Dataset(variables, {"shape": list(SHAPES)})
+    return xr.Dataset(variables, {"law_shape": list(ALL), "law": list(LAWS)})
 
 
 def measure(quick: bool) -> xr.Dataset:
@@ -154,7 +236,7 @@ def measure(quick: bool) -> xr.Dataset:
 
 def draw(result: xr.Dataset) -> Figure:
     """Draw bars of time per visit, on logarithmic axes."""
-    figure = Figure(figsize=(13, 4), layout="constrained")
+    figure = blank(13, 4)
     left, right = figure.subplots(1, 2, width_ratios=[1, 1.8])
     contacts = {str(name): result.cost.sel(contact=name) for name in result.contact.to_numpy()}
     others = {label: result[name] for name, label in _BARS.items()}
@@ -176,10 +258,8 @@ def draw(result: xr.Dataset) -> Figure:
 
 def report(result: xr.Dataset) -> str:
     """Return the figures in tables."""
-    counts = (
-        "the sum over {asperities} paraboloids, {dugdale_count} of them with Dugdale adhesion; a sweep of {cells} cells"
-    )
-    return f"Measured on {counts.format(**result.attrs)}.\n\n{tables(result)}"
+    counts = "{asperities} paraboloids, {dugdale_count} of them with Dugdale adhesion; a sweep of {cells} cells"
+    return f"Measured on the sum over {counts.format(**result.attrs)}.\n\n{tables(result)}"
 
 
 STUDY = Study(

@@ -12,6 +12,7 @@ from pathlib import Path
 
 import numpy as np
 import xarray as xr
+from studies.comparison import in_cases
 from studies.study import named
 
 from benchmarks.child import small_scene
@@ -24,6 +25,11 @@ from roughmdr.runner.cluster import connected
 from roughmdr.runner.local import Pool, Processes, Threads
 
 SCHEDULERS = ("threads", "processes", "distributed")
+_OVERHEADS = {
+    "task_overhead": ("overhead of a task", "s"),
+    "task_caller": ("processor time of the caller for a task", "s"),
+    "task_scheduler": ("processor time of the scheduler for a task", "s"),
+}
 POOLS: dict[str, Callable[[int], Pool]] = {"threads": Threads, "processes": Processes}
 
 
@@ -68,17 +74,12 @@ def by_workers(count: int, tasks: int, repeats: int) -> xr.Dataset:
 
 def by_scheduler(tasks: int, repeats: int, workers: tuple[int, ...]) -> xr.Dataset:
     """Measure what a task costs that does next to nothing, for numbers of workers; medians."""
-    found = np.moveaxis(np.array([_overheads(tasks, count, repeats) for count in workers]), -1, 0)
-    about = {
-        "task_overhead": "overhead of a task",
-        "task_caller": "processor time of the caller for a task",
-        "task_scheduler": "processor time of the scheduler for a task",
-    }
-    variables = {
-        name: (("workers", "scheduler"), values, named(about[name], "s"))
-        for name, values in zip(about, found, strict=True)
-    }
-    return xr.Dataset(variables, {"workers": list(workers), "scheduler": list(SCHEDULERS)}, {"tasks": tasks})
+    found = [_overheads(tasks, count, repeats).T for count in workers]
+    return xr.Dataset(
+        in_cases(_OVERHEADS, found, "workers", "scheduler"),
+        {"workers": list(workers), "scheduler": list(SCHEDULERS)},
+        {"tasks": tasks},
+    )
 
 
 def _overheads(tasks: int, workers: int, repeats: int) -> Floats:

@@ -5,8 +5,7 @@ ratio of boundary elements, or of pairs with JKR, to these on a few.
 """
 
 import math
-import time
-import warnings
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -14,7 +13,7 @@ import xarray as xr
 
 import roughmdr as rm
 from roughmdr.batch.stopping_rule import FEWEST
-from studies.study import Figure, Study, blank, in_two_processes, named, table
+from studies.study import Figure, Study, blank, in_two_processes, named, table, timed, without_limits
 
 SEED = 11
 REQUESTS = {False: tuple(range(40)), True: (12, 30, 32)}
@@ -65,8 +64,7 @@ def draw_surface(chance: np.random.Generator, kind: str) -> dict[str, Any]:
 
 def law_of(scene: dict[str, Any], **sections: Any) -> xr.Dataset:
     """Return the result of a scene with more sections."""
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", rm.LimitWarning)
+    with without_limits():
         return rm.run({**scene, **sections}, workers=1)
 
 
@@ -121,9 +119,8 @@ def carry_out(number: int) -> dict[str, Any]:
     """Return what a request asked for, got and cost; errors are over that asked for."""
     scene, quantity, given, at, tolerance = draw_request(number)
     true, unknown, independent = truth_of(scene, quantity, given, at)
-    began = time.perf_counter()
-    found = law_of(scene, accuracy={"of": {quantity: tolerance, f"at_{given}": at}, "max_realizations": 400})
-    whole = time.perf_counter() - began
+    accuracy = {"of": {quantity: tolerance, f"at_{given}": at}, "max_realizations": 400}
+    found, whole = timed(partial(law_of, scene, accuracy=accuracy))
     method = found.attrs["accuracy"].splitlines()[0].rpartition(": ")[2].partition(",")[0]
     values = found[f"reference_{quantity}" if method == "boundary elements" else quantity].isel(step=-1).to_numpy()
     scale = tolerance * (1.0 if quantity == "separation" else abs(true))

@@ -36,11 +36,13 @@ def law_or_nan(ensemble: xr.Dataset, separation: Floats, *variables: str, **aske
     return [law[name].to_numpy() for name in variables]
 
 
-def in_cases(
-    words: Mapping[str, tuple[str, str]], cases: Sequence[Mapping[str, Any]], *dims: str
-) -> dict[str, Variable]:
-    """Return variables by their words and units, of numbers or arrays of each case; NaN beyond the end of arrays."""
-    return {name: (dims, _padded([case[name] for case in cases]), named(*words[name])) for name in words}
+def in_cases(words: Mapping[str, tuple[str, str]], cases: Sequence[Any], *dims: str) -> dict[str, Variable]:
+    """Return variables by their words and units, of numbers or arrays of each case; NaN beyond the end of arrays.
+
+    A case has them by their names, or in the order of the words.
+    """
+    found = [case if isinstance(case, Mapping) else dict(zip(words, case, strict=True)) for case in cases]
+    return {name: (dims, _padded([case[name] for case in found]), named(*words[name])) for name in words}
 
 
 def _padded(rows: list[Any]) -> Floats:
@@ -52,7 +54,7 @@ def _padded(rows: list[Any]) -> Floats:
     return found
 
 
-def of(result: xr.Dataset, **labels: str) -> xr.Dataset:
+def of(result: xr.Dataset, **labels: Any) -> xr.Dataset:
     """Return the cases of a result with these labels."""
     chosen = np.all([result[name].to_numpy() == label for name, label in labels.items()], axis=0)
     (dim,) = result[next(iter(labels))].dims

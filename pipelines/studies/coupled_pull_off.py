@@ -75,16 +75,10 @@ def cycle(ensemble: xr.Dataset, interaction: Any, steps: int) -> Cycle:
     """Return the numbers of loading in ``steps`` and of unloading in as many, until all contacts have parted."""
     top = float(ensemble["height"].max()) + _CLEAR * PULL_OFF_LENGTH
     law = along(ensemble, np.linspace(top, -_DEPTH * PULL_OFF_LENGTH, steps), interaction)
-    closest = law.isel(step=steps - 1)
-    return Cycle(
-        float(law["pull_off_force"]),
-        float(law["pull_off_contacts"]),
-        float(closest["contact_count"]),
-        float(closest["contact_fraction"]),
-        float(law["dissipated_energy"][-1]),
-        float(law.get("avalanche_size_max", 1.0)),
-        float(law.get("marked_steps", 0.0)),
-    )
+    closest, marked = law.isel(step=steps - 1), law.get("marked_steps", 0.0)
+    numbers = [law["pull_off_force"], law["pull_off_contacts"], closest["contact_count"], closest["contact_fraction"],
+               law["dissipated_energy"][-1], law.get("avalanche_size_max", 1.0), marked]  # fmt: skip
+    return Cycle._make(map(float, numbers))
 
 
 def along(ensemble: xr.Dataset, separation: np.ndarray, interaction: Any) -> xr.Dataset:
@@ -154,45 +148,43 @@ def beyond_pairs(result: xr.Dataset) -> xr.DataArray:
 
 def draw(result: xr.Dataset) -> Figure:
     """Draw the change of the pull-off over distance and number of asperities, and the largest avalanches."""
-    figure, (left, middle, right) = panels(12.5, 4.3, 3)
-    pull_off = 100.0 * change(result, "pull_off_force")
-    size = result["avalanche"].sel(model="coupled")
-    dense = beyond_pairs(result).to_numpy()
-    at_usual_distance, at_usual_number = _series(result)
-    _points(left, result["distance"], pull_off, dense, at_usual_number)
-    _points(middle, result["asperities"], pull_off, dense, at_usual_distance)
-    _points(right, result["asperities"], size, dense, at_usual_distance)
-    ylabel = "change of the pull-off force by coupling [%]"
-    left.set(xlabel="mean distance over jump-on radius", ylabel=ylabel)
-    left.set_title(f"{_usual(result, at_usual_number, 'asperities')} asperities")
-    distance = _usual(result, at_usual_distance, "distance")
-    middle.set(xlabel="asperities", ylabel=ylabel, title=f"distance {distance} jump-on radii")
-    right.set(xlabel="asperities", ylabel="contacts in the largest avalanche")
-    right.set_title(f"distance {distance} jump-on radii")
-    for panel in (left, middle):
-        panel.axhline(0.0, color="0.6", lw=0.8)
-    for panel, ticks in ((left, result["distance"]), (middle, result["asperities"]), (right, result["asperities"])):
-        shown = at_usual_number if panel is left else at_usual_distance
-        values = np.unique(ticks.to_numpy()[shown])
-        panel.set_xscale("log")
-        panel.set_xticks(values, [f"{value:g}" for value in values])
+    figure, row = panels(12.5, 4.3, 3)
+    dense, (at_usual_distance, at_usual_number) = beyond_pairs(result).to_numpy(), _series(result)
+    pull_off, ylabel = 100.0 * change(result, "pull_off_force"), "change of the pull-off force by coupling [%]"
+    distance, count = (float(result[name].to_numpy()[among][0]) for name, among in (
+        ("distance", at_usual_distance), ("asperities", at_usual_number)
+    ))  # fmt: skip
+    size, beside = result["avalanche"].sel(model="coupled"), f"distance {distance:g} jump-on radii"
+    usual = f"{count:g} asperities"
+    for panel, over, values, among, words in (
+        (
+            row[0],
+            "distance",
+            pull_off,
+            at_usual_number,
+            ("mean distance over jump-on radius", ylabel, usual),
+        ),
+        (row[1], "asperities", pull_off, at_usual_distance, ("asperities", ylabel, beside)),
+        (row[2], "asperities", size, at_usual_distance, ("asperities", "contacts in the largest avalanche", beside)),
+    ):
+        _points(panel, result[over], values, dense, among)
+        ticks = np.unique(result[over].to_numpy()[among])
+        panel.set(xscale="log", **dict(zip(("xlabel", "ylabel", "title"), words, strict=True)))
+        panel.set_xticks(ticks, [f"{value:g}" for value in ticks])
         panel.minorticks_off()
+    for panel in row[:2]:
+        panel.axhline(0.0, color="0.6", lw=0.8)
     if dense[at_usual_number].any():
-        left.plot([], [], "o", color="0.4", mfc="white", label="too dense for pairs")
-    left.legend(fontsize=8, title="height spread over pull-off length", title_fontsize=8)
+        row[0].plot([], [], "o", color="0.4", mfc="white", label="too dense for pairs")
+    row[0].legend(fontsize=8, title="height spread over pull-off length", title_fontsize=8)
     return figure
 
 
 def _series(result: xr.Dataset) -> tuple[np.ndarray, np.ndarray]:
     """Return which surfaces have the usual distance with several numbers of asperities, and which the usual number."""
     spread, distance, asperities = (result[name].to_numpy() for name in ("spread", "distance", "asperities"))
-    usual_number = np.bincount(asperities.astype(int)).argmax()
-    odd = asperities != usual_number
+    odd = asperities != np.bincount(asperities.astype(int)).argmax()
     return np.isin(spread, spread[odd]) & (distance == distance[odd][0]), ~odd
-
-
-def _usual(result: xr.Dataset, among: np.ndarray, name: str) -> str:
-    return f"{float(result[name].to_numpy()[among][0]):g}"
 
 
 def _points(panel: Axes, x: xr.DataArray, values: xr.DataArray, dense: np.ndarray, among: np.ndarray) -> None:
@@ -212,25 +204,18 @@ def _points(panel: Axes, x: xr.DataArray, values: xr.DataArray, dense: np.ndarra
 
 def report(result: xr.Dataset) -> str:
     """Return a table of all surfaces, and how it was measured."""
-    alone = result.sel(model="independent")
-    coupled = result.sel(model="coupled")
-    pull_off, lost = change(result, "pull_off_force"), change(result, "dissipated_energy")
-    area = JUMP_ON_RADIUS**2
-    dense = beyond_pairs(result)
-    rows = []
+    pull_off, lost, dense = change(result, "pull_off_force"), change(result, "dissipated_energy"), beyond_pairs(result)
+    mean, rows = result.mean("realization"), []
     for i in range(result.sizes["surface"]):
-        one, with_coupling = alone.isel(surface=i), coupled.isel(surface=i)
-        count = float(one["asperities"])
+        (alone, coupled), count = (mean.isel(surface=i).sel(model=name) for name in MODELS), float(result.asperities[i])
+        force = (f"{-float(one.pull_off_force) / count / PULL_OFF_FORCE:.3f}" for one in (alone, coupled))
         rows.append([
-            f"{float(one['spread']):g}", f"{count:g}", f"{float(one['distance']):g}{' *' if dense[i] else ''}",
-            f"{-float(one['pull_off_force'].mean()) / count / PULL_OFF_FORCE:.3f}",
-            f"{-float(with_coupling['pull_off_force'].mean()) / count / PULL_OFF_FORCE:.3f}",
-            _percent(pull_off[i]),
-            f"{float(one['dissipated_energy'].mean()) / count / (WORK * area):.3f}",
-            _percent(lost[i]),
-            f"{float(one['contacts'].mean()):.1f}, {float(with_coupling['contacts'].mean()):.1f}",
-            f"{float(with_coupling['avalanche'].mean()):.1f} ({float(with_coupling['avalanche'].mean()) / count:.1%})",
-            f"{float(with_coupling['contact_fraction'].mean()):.1%}",
+            f"{float(result.spread[i]):g}", f"{count:g}", f"{float(result.distance[i]):g}{' *' if dense[i] else ''}",
+            *force, _percent(pull_off[i]),
+            f"{float(alone.dissipated_energy) / count / (WORK * JUMP_ON_RADIUS**2):.3f}", _percent(lost[i]),
+            f"{float(alone.contacts):.1f}, {float(coupled.contacts):.1f}",
+            f"{float(coupled.avalanche):.1f} ({float(coupled.avalanche) / count:.1%})",
+            f"{float(coupled.contact_fraction):.1%}",
         ])  # fmt: skip
     length, radius = (f"{1e6 * each:.3g} µm" for each in (PULL_OFF_LENGTH, JUMP_ON_RADIUS))
     head = [

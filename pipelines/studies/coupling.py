@@ -1,8 +1,6 @@
 """Coupled asperities: error against run time of a load by several methods, and run time against their number."""
 
 import math
-import time
-from collections.abc import Callable
 from functools import partial
 from typing import Any, NamedTuple
 from unittest.mock import patch
@@ -15,7 +13,7 @@ from oracles.boundary_elements import HeightMap
 from roughmdr.interaction import solve
 from roughmdr.numerics.arguments import Floats
 from studies.comparison import PAIRS, in_cases, law_of, panels
-from studies.study import Figure, Study, named, table
+from studies.study import Figure, Study, named, table, timed
 from studies.versus_bem import without_grid
 from studies.versus_bem.ensembles import MODULUS, SIZE, Case, height_map, separations
 
@@ -60,17 +58,8 @@ def coupled(ensemble: xr.Dataset, separation: Floats, interaction: Any, dense: b
 def by_boundary_elements(ensemble: xr.Dataset, separation: Floats, points: int) -> tuple[Floats, float]:
     """Return forces [N] at separations [m] on a grid, and the run time [s] of a load."""
     surface = HeightMap(height_map(ensemble, points), SIZE, MODULUS)
-    return timed(lambda: np.array([surface.press(h).force for h in separation.tolist()]), 1, separation.size)
-
-
-def timed(action: Callable[[], Floats], runs: int, loads: int) -> tuple[Floats, float]:
-    """Return forces and the run time [s] of a load, the shortest of several runs."""
-    seconds = []
-    for _ in range(runs):
-        started = time.perf_counter()
-        force = action()
-        seconds.append((time.perf_counter() - started) / loads)
-    return force, min(seconds)
+    force, seconds = timed(lambda: np.array([surface.press(h).force for h in separation.tolist()]))
+    return force, seconds / separation.size
 
 
 def compare(quick: bool) -> list[Point]:
@@ -92,8 +81,8 @@ def compare(quick: bool) -> list[Point]:
     for method, setting, *how in asked:
         action = partial(coupled, ensemble, along, *how)
         action()  # compiles
-        force, seconds = timed(action, 2, along.size)
-        found.append(Point(method, setting, _worst(force, exact), seconds))
+        force, seconds = timed(action, 2)
+        found.append(Point(method, setting, _worst(force, exact), seconds / along.size))
     for points, (force, seconds) in grids.items():
         found.append(Point("boundary elements", f"{points} points", _worst(force, exact), seconds))
     return found
@@ -111,8 +100,8 @@ def cost(count: int) -> tuple[float, ...]:
     measured = {True: (math.nan, math.nan)}
     for dense in (False, True) if count <= _MOST_DENSE else (False,):
         coupled(ensemble, along[:1], PAIRS[2], dense)
-        force, seconds = timed(partial(coupled, ensemble, along, PAIRS[2], dense), 1, along.size)
-        measured[dense] = force[-1], seconds
+        force, seconds = timed(partial(coupled, ensemble, along, PAIRS[2], dense))
+        measured[dense] = force[-1], seconds / along.size
     (force_mesh, seconds_mesh), (force_dense, seconds_dense) = measured[False], measured[True]
     return seconds_mesh, seconds_dense, abs(force_mesh / force_dense - 1.0), peak_memory()
 

@@ -1,5 +1,7 @@
 """The framework of a study or a figure: measure into NAME.nc, draw PNG files, and report in Markdown."""
 
+import math
+import time
 import warnings
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import ProcessPoolExecutor
@@ -22,7 +24,8 @@ if TYPE_CHECKING:
 else:  # matplotlib is loaded where something is drawn
     Axes = Figure = Any
 
-__all__ = ["Axes", "Draw", "Figure", "Study", "blank", "in_two_processes", "named", "table", "without_limits"]
+__all__ = ["Axes", "Draw", "Figure", "Study", "blank", "in_two_processes", "named", "table", "timed",
+           "without_limits"]  # fmt: skip
 Draw: TypeAlias = Callable[[xr.Dataset], Figure]
 REDUCED = "Reduced form: "
 """Begins the line of a report that says what its study leaves out."""
@@ -64,6 +67,16 @@ def in_two_processes(function: Callable[[Any], Any], items: Iterable[Any], chunk
     """Return what a function makes of each item, in two processes that begin anew."""
     with ProcessPoolExecutor(2, get_context("spawn")) as pool:
         return list(pool.map(function, items, chunksize=chunksize))
+
+
+def timed(action: Callable[[], Any], repeats: int = 1, enough: float = math.inf) -> tuple[Any, float]:
+    """Return what an action returns, and the shortest of some run times [s], of those that begin within ``enough``."""
+    seconds = list[float]()
+    while len(seconds) < repeats and sum(seconds) < enough:
+        started = time.perf_counter()
+        found = action()
+        seconds.append(time.perf_counter() - started)
+    return found, min(seconds)
 
 
 @contextmanager

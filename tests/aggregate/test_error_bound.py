@@ -10,8 +10,7 @@ from oracles.jkr_power_law import JkrPowerLaw
 from oracles.multiprecision import mp
 from scenes import ensemble
 from studies import asperity_error
-from studies.asperity_error import ForceError, random_error
-from studies.asperity_error.asperities import DRAW
+from studies.asperity_error import DRAW, ForceError, random_error
 
 import roughmdr as rm
 from roughmdr.aggregate import loop, totals

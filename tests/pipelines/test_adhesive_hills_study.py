@@ -7,8 +7,7 @@ import numpy as np
 import pytest
 from carried_out import CarriedOut, carried_out
 from studies.adhesive_hills import METHODS, STUDY, judge
-from studies.adhesive_hills.cases import QUICK, Adhesive
-from studies.adhesive_hills.stated import SETS, compare
+from studies.adhesive_hills.cases import QUICK, SETS, Adhesive, compare
 from studies.comparison import FACTOR
 
 

@@ -6,7 +6,7 @@ from forms import large
 from oracles.mdr_tables import MdrTableProfile
 from oracles.multiprecision import Number, mp
 from oracles.profiles import Profile, closed_profile
-from studies.asperity_error.asperities import DRAW
+from studies.asperity_error import DRAW
 
 import roughmdr as rm
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from oracles.exact_contact import ExactContact
 from oracles.multiprecision import mp
-from studies.asperity_error.asperities import DRAW
+from studies.asperity_error import DRAW
 
 import roughmdr as rm
 from roughmdr.numerics.jit import compiled

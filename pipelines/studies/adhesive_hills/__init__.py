@@ -6,9 +6,8 @@ import numpy as np
 import xarray as xr
 
 from roughmdr.numerics.arguments import Floats
-from studies.adhesive_hills.cases import CASES, QUICK, Adhesive, Case, Law
-from studies.adhesive_hills.stated import FEW, MAPS, measure_stated, report_stated
-from studies.comparison import in_cases, panels, rms
+from studies.adhesive_hills.cases import CASES, FEW, MAPS, QUICK, Adhesive, Case, Law, measure_stated, report_stated
+from studies.comparison import in_cases, panels, percent, rms
 from studies.hills.maps import SIDE
 from studies.study import Axes, Figure, Study, table
 
@@ -122,15 +121,12 @@ def report(result: xr.Dataset) -> str:
         case = result.isel(case=i)
         true = case.sel(source="elements")
         turn = case.sizes["step"] // 2
-        ends.append([
-            name_of(case),
-            f"{100.0 * float(true['contact_fraction'].max()):.1f} %",
-            f"{float(-true['force'][turn:].min() / np.abs(true['force']).max()):.2f}",
-            f"{float(case['cells']):.1f}",
-        ])  # fmt: skip
+        pulled = float(-true["force"][turn:].min() / abs(true["force"]).max())
+        most = percent(float(true["contact_fraction"].max()))
+        ends.append([name_of(case), most, f"{pulled:.2f}", f"{float(case['cells']):.1f}"])
         for source in (*METHODS, *ELEMENTS):
             found = judge(case, source)
-            errors = [f"{100.0 * value:.0f} %" for value in found[:3]]
+            errors = [percent(value, 0) for value in found[:3]]
             rows.append([name_of(case), source, *errors, f"{found.pull_off:.2f}", f"{found.loss:.2f}"])
     head = ["map, jump-on radius", "source", "loading", "unloading", "area", "pull-off", "loss"]
     ends_head = ["map, jump-on radius", "largest contact", "pull-off over largest force", "zone over grid"]

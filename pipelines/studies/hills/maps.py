@@ -15,6 +15,7 @@ from roughmdr.ensemble.maps.summits import find_summits
 from roughmdr.ensemble.maps.waves import MapWaves
 from roughmdr.numerics.arguments import Floats
 from studies.comparison import law_or_nan
+from studies.study import timed
 
 SIDE = 1e-4
 """Side of the patch [m]."""
@@ -130,12 +131,13 @@ def by_asperities(
     surface: HeightMap, separation: Floats, find: Callable[[HeightMap], Ensemble], interaction: Any
 ) -> Pressed:
     """Return the law of the asperities of a map at separations [m]; NaN where it has none."""
-    started = time.perf_counter()
-    ensemble = find(surface).labelled().to_xarray()
-    asked = {"effective_modulus": 1.0, "interaction": interaction}
-    force, contact_fraction = law_or_nan(ensemble, separation, "force", "contact_fraction", **asked)
-    seconds = time.perf_counter() - started
-    return Pressed(force, contact_fraction, law_or_nan(ensemble, separation, "stiffness", **asked)[0], seconds)
+
+    def law(*variables: str) -> list[Floats]:
+        return law_or_nan(found, separation, *variables, effective_modulus=1.0, interaction=interaction)
+
+    found, finding = timed(lambda: find(surface).labelled().to_xarray())
+    (force, contact_fraction), seconds = timed(lambda: law("force", "contact_fraction"))
+    return Pressed(force, contact_fraction, law("stiffness")[0], finding + seconds)
 
 
 def by_persson(surface: HeightMap, separation: Floats, gamma: float) -> Pressed:

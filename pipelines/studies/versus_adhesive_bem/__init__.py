@@ -1,6 +1,6 @@
 """Adhesive asperities by models and by boundary elements on two grids, along the same path."""
 
-import time
+from functools import partial
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -8,8 +8,8 @@ import xarray as xr
 from oracles.adhesive_elements import AdhesiveMap
 
 from roughmdr.numerics.arguments import Floats
-from studies.comparison import in_cases, panels
-from studies.study import Axes, Figure, Study, table
+from studies.comparison import in_cases, of, panels
+from studies.study import Axes, Figure, Study, table, timed
 from studies.versus_adhesive_bem.cases import DETACHED, MODELS, WORK, Case, law
 from studies.versus_bem.ensembles import distances, height_map
 
@@ -65,14 +65,9 @@ def compare(case: Case) -> dict[str, Any]:
     """Return force, area and count by each source along the path of a case, with the run times of the path [s]."""
     ensemble = case.generate()
     separation = case.separations(ensemble)
-    laws, seconds = [], []
-    for name in SOURCES:
-        started = time.perf_counter()
-        if name in MODELS:
-            laws.append(law(ensemble, separation, MODELS[name]))
-        else:
-            laws.append(by_elements(case, ensemble, separation, case.points if name == "bem" else case.coarse))
-        seconds.append(time.perf_counter() - started)
+    sources = [partial(law, ensemble, separation, interaction) for interaction in MODELS.values()]
+    sources += [partial(by_elements, case, ensemble, separation, points) for points in (case.points, case.coarse)]
+    laws, seconds = zip(*map(timed, sources), strict=True)
     return {
         **{name: [each[name] for each in laws] for name in _QUANTITIES},
         "separation": separation - float(ensemble["height"].max()),
@@ -130,28 +125,32 @@ def jumps(count: Floats, separation: Floats) -> tuple[Floats, Floats]:
     return np.repeat(middle[: turn + 1], on), np.repeat(middle[turn + 1 :], off)
 
 
+def known(case: xr.Dataset) -> tuple[xr.Dataset, Floats, int]:
+    """Return a case without what lies beyond the end of its path, the separations, and the step at which it turns."""
+    case = case.dropna("step", subset=["separation"])
+    separation = case["separation"].to_numpy()
+    return case, separation, turning(separation)
+
+
 def judge(case: xr.Dataset, source: str) -> Judged:
     """Judge a source against boundary elements on the fine grid."""
-    case = case.isel(step=np.flatnonzero(case["separation"].notnull().to_numpy()))
-    separation = case["separation"].to_numpy()
-    turn = turning(separation)
-    force, area, count = (case[name].sel(source=source).to_numpy() for name in ("force", "area", "count"))
-    force_bem, area_bem, count_bem = (case[name].sel(source="bem").to_numpy() for name in ("force", "area", "count"))
-    tension = -force_bem[turn:].min()
-    alike = count == count_bem
-    contact = (count > 0) | (count_bem > 0)
-    judged = alike & contact
-    off = np.where(judged, np.abs(force - force_bem), 0.0) / tension
-    areas_off = np.where(judged, np.abs(area - area_bem), 0.0) / area_bem.max()
+    case, separation, turn = known(case)
+    found, true = ({name: case[name].sel(source=each).to_numpy() for name in _QUANTITIES} for each in (source, "bem"))
+    tension = -true["force"][turn:].min()
+    alike, contact = found["count"] == true["count"], (found["count"] > 0) | (true["count"] > 0)
+    force, area = (
+        np.where(alike & contact, np.abs(found[name] - true[name]), 0.0) / scale
+        for name, scale in (("force", tension), ("area", true["area"].max()))
+    )
     lags = [
-        float(np.mean(np.sort(true) - np.sort(found))) / -DETACHED if true.size == found.size else np.nan
-        for found, true in zip(jumps(count, separation), jumps(count_bem, separation), strict=True)
+        float(np.mean(np.sort(there) - np.sort(here))) / -DETACHED if there.size == here.size else np.nan
+        for here, there in zip(*(jumps(each["count"], separation) for each in (found, true)), strict=True)
     ]
     return Judged(
-        loading=float(off[: turn + 1].max()),
-        unloading=float(off[turn:].max()),
-        area=float(areas_off.max()),
-        pull_off=float(-force[turn:].min() / tension - 1.0),
+        loading=float(force[: turn + 1].max()),
+        unloading=float(force[turn:].max()),
+        area=float(area.max()),
+        pull_off=float(-found["force"][turn:].min() / tension - 1.0),
         on=lags[0],
         off=lags[1],
         apart=float(np.mean(~alike[contact])),
@@ -160,16 +159,14 @@ def judge(case: xr.Dataset, source: str) -> Judged:
 
 def _curves(panel: Axes, case: xr.Dataset, quantity: str, share: float) -> None:
     """Draw a quantity over the separation: loading hollow and thin, unloading full."""
-    case = case.isel(step=np.flatnonzero(case["separation"].notnull().to_numpy()))
-    separation = case["separation"].to_numpy()
-    turn = turning(separation)
+    case, separation, turn = known(case)
+    loading, unloading = slice(turn + 1), slice(turn, None)
+    drawn = {name: share * case[quantity].sel(source=name).to_numpy() for name in ("independent", "second", "bem")}
     for name, style in (("independent", "--"), ("second", "-")):
-        values = share * case[quantity].sel(source=name).to_numpy()
-        panel.plot(separation[: turn + 1], values[: turn + 1], style, color=_COLOURS[name], lw=1.0)
-        panel.plot(separation[turn:], values[turn:], style, color=_COLOURS[name], lw=2.0, label=_LABELS[name])
-    values = share * case[quantity].sel(source="bem").to_numpy()
-    panel.plot(separation[: turn + 1], values[: turn + 1], "ko", ms=4, mfc="w", label="boundary elements, loading")
-    panel.plot(separation[turn:], values[turn:], "ko", ms=4, label="boundary elements, unloading")
+        for part, width, label in ((loading, 1.0, None), (unloading, 2.0, _LABELS[name])):
+            panel.plot(separation[part], drawn[name][part], style, color=_COLOURS[name], lw=width, label=label)
+    for part, fill, label in ((loading, "w", "loading"), (unloading, "k", "unloading")):
+        panel.plot(separation[part], drawn["bem"][part], "ko", ms=4, mfc=fill, label=f"boundary elements, {label}")
     panel.set(xlabel="separation from the highest asperity [a0²/R]")
 
 
@@ -178,16 +175,16 @@ def _by_tabor(panel: Axes, result: xr.Dataset) -> None:
 
     Its neighbours, the periodic images, are so far away that it shows the range alone.
     """
-    numbers, spacings = result["asperities"].to_numpy(), result["spacing"].to_numpy()
-    groups = sorted(set(zip(numbers.tolist(), spacings.tolist(), strict=True)))
+    numbers, spacings = (result[name].to_numpy().tolist() for name in ("asperities", "spacing"))
+    groups = sorted(set(zip(numbers, spacings, strict=True)))
     for (number, spacing), marker in zip(groups, "Dsov", strict=False):
-        own = result.isel(case=np.flatnonzero((numbers == number) & (spacings == spacing)))
+        own = of(result, asperities=number, spacing=spacing)
         for name in ("second",) if number == 1 else ("independent", "second"):
             found = [judge(own.isel(case=i), name) for i in range(own.sizes["case"])]
             errors = [100.0 * max(one.loading, one.unloading) for one in found]
-            where = f"one, {spacing:g} a0 apart" if number == 1 else f"{number}, {spacing:g} a0 apart"
+            label = f"{'one' if number == 1 else f'{number:g}'}, {spacing:g} a0 apart: {_LABELS[name]}"
             colour, line = ("k", ":") if number == 1 else (_COLOURS[name], "-")
-            panel.loglog(own["tabor"], errors, line, marker=marker, color=colour, label=f"{where}: {_LABELS[name]}")
+            panel.loglog(own["tabor"], errors, line, marker=marker, color=colour, label=label)
     panel.set(xlabel="Tabor number", ylabel="largest error of the force over pull-off [%]")
     panel.set_xticks([2, 3, 4, 6], ["2", "3", "4", "6"])
     panel.set_xticks([], minor=True)
@@ -229,6 +226,7 @@ def report(result: xr.Dataset) -> str:
         paired = f"{1e3 * float(case['seconds'].sel(source='second')):.0f} ms"
         grids.append([*head, f"{100.0 * fraction:.1f} %", f"{float(case['cells']):.1f}",
                       *_percent(mesh, "loading", "unloading", "area", "pull_off"), seconds, paired])  # fmt: skip
+    step = float(-result["separation"].isel(case=0).diff("step")[0])
     own = ["asperities", "apart (nearest) [a0]", "Tabor number"]
     errors_head = ["model", "loading", "unloading", "contact area", "pull-off force"]
     lags_head = ["model", "jumps on", "lets go", "steps not compared"]
@@ -241,7 +239,7 @@ area of boundary elements is the mean of those where the gap is 0 and where it i
 {table([*own, *errors_head], errors)}
 
 Lags of jumps, means over the asperities: how much farther away they jump on and let go by boundary elements, over the
-stretch at which one alone lets go (a step of the path is {100.0 * _step(result):.0f} % of it):
+stretch at which one alone lets go (a step of the path is {100.0 * step / -DETACHED:.0f} % of it):
 
 {table([*own, *lags_head], lags)}
 
@@ -253,12 +251,6 @@ How far a grid of 2/3 as many points a side is from the grid, the largest contac
 
 def _percent(found: Judged, *names: str) -> list[str]:
     return [f"{100.0 * getattr(found, name):.2g} %" for name in names]
-
-
-def _step(result: xr.Dataset) -> float:
-    """Return the step of the first path over the stretch at which one alone lets go."""
-    separation = result["separation"].isel(case=0).to_numpy()
-    return float(separation[0] - separation[1]) / -DETACHED
 
 
 STUDY = Study(

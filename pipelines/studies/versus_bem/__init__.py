@@ -5,7 +5,7 @@ Asperities are independent, displaced by the mean pressure, or coupled in pairs 
 
 import itertools
 import math
-import time
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -17,7 +17,7 @@ import roughmdr as rm
 from roughmdr.model_error.interaction import ASPERITIES, SUMMITS, interaction_error
 from roughmdr.numerics.arguments import Floats
 from studies.comparison import HELD, INTERACTIONS, held, in_cases, law_or_nan, median_and_largest, panels
-from studies.study import Figure, Study, in_two_processes, named, table, without_limits
+from studies.study import Figure, Study, in_two_processes, named, table, timed, without_limits
 from studies.versus_bem.ensembles import (
     CASES,
     FINE,
@@ -73,12 +73,10 @@ def press(surface: HeightMap, separation: float, separated_paraboloids: bool) ->
     Areas of separated paraboloids are those by their pressure. NaN where elements do not converge, as next to full
     contact.
     """
-    started = time.perf_counter()
     try:
-        force = surface.press(separation).force
+        (force, _), seconds = timed(partial(surface.press, separation))
     except rm.OutOfRange:
         return math.nan, math.nan, math.nan, math.nan
-    seconds = time.perf_counter() - started
     if not math.isfinite(force):
         return force, 1.0, 1.0, seconds
     area = of_half_ellipsoids if separated_paraboloids else by_perimeter
@@ -108,9 +106,7 @@ def compare(case: Case | MapCase) -> dict[str, Floats]:
     along = separations(ensemble, FRACTIONS[FRACTIONS <= _FINE_FRACTION] if case.points >= FINE else FRACTIONS)
     along = along[np.isfinite(along)]
     laws = {name: law_by(ensemble, along, interaction) for name, interaction in MODELS.items()}
-    started = time.perf_counter()  # all is compiled by now
-    law_by(ensemble, along, MODELS["force_second"])
-    seconds = (time.perf_counter() - started) / along.size
+    seconds = timed(partial(law_by, ensemble, along, MODELS["force_second"]))[1] / along.size  # all is compiled by now
     fine, coarse = (HeightMap(height, SIZE, MODULUS) for height in maps)
     radii, distance = [contact_radii(ensemble, h) for h in along.tolist()], distances(ensemble)
     apart = [isinstance(case, Case) and "radius" in ensemble and not touch(each, distance) for each in radii]

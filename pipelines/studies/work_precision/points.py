@@ -1,13 +1,13 @@
 """The points of the study of error against run time: what a method costs with a setting, and how far off it is."""
 
 import math
-import time
 from collections.abc import Callable, Iterator
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from roughmdr.numerics.arguments import Floats
+from studies.study import timed
 
 _LONG = 0.5  # [s], after which a curve is not timed again
 QUANTITIES = ("force", "contact area", "pull-off force")
@@ -81,12 +81,8 @@ def each_setting(settings: tuple[float, ...], prepare: Callable[[Any, float], Ca
     def points(scene: Any, exact: Reference, quick: bool) -> Iterator[Point]:
         prepare(scene, settings[0])()  # compiled before the clock runs
         for setting in settings[:: 2 if quick else 1]:
-            action, seconds = prepare(scene, setting), list[float]()
-            while len(seconds) < (1 if quick else 3) and sum(seconds) < _LONG:
-                started = time.perf_counter()
-                curve = action()
-                seconds.append(time.perf_counter() - started)
-            yield Point(setting, exact.errors(curve), min(seconds), curve.evaluations)
+            curve, seconds = timed(prepare(scene, setting), 1 if quick else 3, _LONG)
+            yield Point(setting, exact.errors(curve), seconds, curve.evaluations)
 
     return points
 

@@ -1,7 +1,6 @@
 """The mean curve of a rough surface: every method for it, by draws and by integrals."""
 
 import math
-import time
 from collections.abc import Callable, Iterator
 from functools import cache, partial
 from typing import Any
@@ -21,6 +20,7 @@ from roughmdr.expected.node import MeanProblem, set_up, totals_of
 from roughmdr.runner.backend import Backend
 from roughmdr.runner.run import execute
 from roughmdr.scene import Scene, read
+from studies.study import timed
 from studies.work_precision.points import Curve, Method, Point, Points, Reference, each_setting, root_mean_square
 
 UM, MODULUS, WORK = 1e-6, 4e6, 0.05
@@ -111,11 +111,7 @@ def _drawn(draw: Draw, count: int, quick_count: int) -> Points:
     def points(rough: Rough, exact: Reference, quick: bool) -> Iterator[Point]:
         draw(rough, 0)  # compiled before the clock runs
         total = quick_count if quick else count
-        curves, seconds = [], []
-        for number in range(total):
-            started = time.perf_counter()
-            curves.append(draw(rough, number))
-            seconds.append(time.perf_counter() - started)
+        curves, seconds = zip(*(timed(partial(draw, rough, number)) for number in range(total)), strict=True)
         each, visits = float(np.median(seconds)), float(np.mean([curve.evaluations for curve in curves]))
         drawn = [np.array([getattr(curve, name) for curve in curves]) for name in ("force", "area")]
         for size in 2 ** np.arange(int(math.log2(total / _MIN_GROUPS)) + 1):
@@ -167,9 +163,8 @@ def _run(rough: Rough, method: str, relative: float, seed: int) -> tuple[Curve, 
         return found
 
     with patch.object(tasks, "simulate_realization", counted):
-        started = time.perf_counter()
-        result = execute(plan, None, Backend(workers=1), quiet=True).variables
-        seconds = time.perf_counter() - started
+        done, seconds = timed(partial(execute, plan, None, Backend(workers=1), quiet=True))
+    result = done.variables
     return Curve(result["force_mean"].values, result["contact_area_mean"].values, sum(visits)), seconds
 
 

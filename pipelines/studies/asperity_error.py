@@ -2,6 +2,7 @@
 
 import contextlib
 import math
+from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
@@ -17,8 +18,8 @@ from roughmdr.kernels.interface import Columns
 from roughmdr.kernels.profile.layout import COUNT, FOOT, TOP
 from roughmdr.loading.staircase import staircase
 from roughmdr.shapes import SHAPES, Shape
-from studies.asperity_error.asperities import DRAW, Rng, power_of_ten
-from studies.study import Study, in_two_processes, named, table, without_limits
+from studies.comparison import in_cases
+from studies.study import Study, in_two_processes, table, without_limits
 
 NEAREST = 1e-12
 """Smallest distance to a fold, over its depth."""
@@ -29,16 +30,79 @@ ASPERITIES, QUICK = 100_000, 480
 _GROUP_SIZE = 100
 _WEIGHT = {"tabulated": 0.2}  # share of cases of a shape, else 1: its reference is slow
 _MODELS = ("none", "JKR")
-COLUMNS = {
-    "shape": {"long_name": "shape of the asperity"},
-    "adhesive": named("with JKR adhesion"),
-    "seed": named("number of the asperity"),
-    "true_error": named("true error of the force"),
-    "stated_error": named("bound on it"),
-    "distance": named("distance to the end of the branch"),
+_COLUMNS = {
+    "true_error": ("true error of the force", "1"),
+    "stated_error": ("bound on it", "1"),
+    "distance": ("distance to the end of the branch", "1"),
 }
+Rng = np.random.Generator
 Group = tuple[str, bool, range]
 """Some asperities: shape, whether with adhesion, and their numbers."""
+
+
+def power_of_ten(rng: Rng, low: float, high: float) -> float:
+    """Return a number whose decimal logarithm is uniform between two."""
+    return float(10.0 ** rng.uniform(low, high))
+
+
+def _length(rng: Rng) -> float:
+    return power_of_ten(rng, -10.0, 0.0)
+
+
+def _slope(rng: Rng) -> float:
+    return power_of_ten(rng, -4.0, 2.0)
+
+
+def _exponent(rng: Rng) -> float:
+    """Return an exponent; half of them are near 1/2, where contacts are most sensitive."""
+    return 0.5 + power_of_ten(rng, -2.0, 0.0 if rng.random() < 0.5 else 2.0)
+
+
+def _series(rng: Rng) -> Shape:
+    """Return a series whose terms are equal within some decades of one width."""
+    width, count = np.float64(power_of_ten(rng, -8.0, -1.0)), int(rng.integers(1, 6))
+    exponents = sorted({round(_exponent(rng), 6) if rng.random() < 0.7 else _exponent(rng) for _ in range(count)})
+    rise = width * _slope(rng)
+    return rm.PowerSeries({n: float(rise * power_of_ten(rng, -3.0, 3.0) / width**n) for n in exponents})
+
+
+def _table(rng: Rng) -> Shape:
+    """Return a table of powers, some with a flat tip, a wear flat or unevenly spaced points."""
+    r = np.concatenate([[0.0], np.cumsum(10.0 ** rng.uniform(-1.5, 0.0, int(rng.integers(3, 12))))])
+    f = (r / r[-1]) ** rng.uniform(1.0, 6.0) + (rng.random() < 0.3) * rng.random() * r / r[-1]
+    if rng.random() < 0.2:
+        f[: int(rng.integers(2, r.size))] = 0.0
+    length = _length(rng)
+    return rm.Tabulated(r * length / r[-1], f * length * power_of_ten(rng, -4.0, 0.0))
+
+
+def _mdr_table(rng: Rng) -> Shape:
+    """Return an MDR table of rises of any size at radii near to each other or far apart."""
+    count = int(rng.integers(1, 20))
+    a, g = (np.cumsum(10.0 ** rng.uniform(-2.0, 0.0, count)) for _ in range(2))
+    return rm.MdrTable(a * _length(rng), g * _length(rng))
+
+
+def _capped(rng: Rng) -> Shape:
+    radius = _length(rng)
+    return rm.CappedParaboloid(radius, radius * power_of_ten(rng, 0.0, 4.0), _length(rng))
+
+
+DRAW: dict[str, Callable[[Rng], Shape]] = {
+    "paraboloid": lambda rng: rm.Paraboloid(_length(rng)),
+    "cone": lambda rng: rm.Cone(_slope(rng)),
+    "power_law": lambda rng: rm.PowerLaw(_exponent(rng), width=_length(rng), rise=_length(rng)),
+    "flat_punch": lambda rng: rm.FlatPunch(_length(rng)),
+    "sphere": lambda rng: rm.Sphere(_length(rng)),
+    "truncated_cone": lambda rng: rm.TruncatedCone(_slope(rng), _length(rng)),
+    "truncated_paraboloid": lambda rng: rm.TruncatedParaboloid(_length(rng), _length(rng)),
+    "rounded_cone": lambda rng: rm.RoundedCone(_slope(rng), _length(rng)),
+    "capped_paraboloid": _capped,
+    "rounded_punch": lambda rng: rm.RoundedPunch(_length(rng), _length(rng)),
+    "power_series": _series,
+    "tabulated": _table,
+    "mdr_table": _mdr_table,
+}
 
 
 class ForceError(NamedTuple):
@@ -194,22 +258,20 @@ def groups(count: int) -> list[Group]:
     return found
 
 
-def rows_of(group: Group) -> list[tuple[str, int, int, float, float, float]]:
-    """Return a row of ``COLUMNS`` for each asperity of a group."""
+def errors_of(group: Group) -> list[tuple[float, float, float]]:
+    """Return the numbers of ``_COLUMNS`` of each asperity of a group."""
     kind, adhesive, seeds = group
-    rows = []
-    for seed in seeds:
-        one = random_error(kind, adhesive, seed)
-        relative = abs(one.error / one.force), abs(one.stated / one.force)
-        rows.append((kind, int(adhesive), seed, *relative, one.distance))
-    return rows
+    found = [random_error(kind, adhesive, seed) for seed in seeds]
+    return [(abs(one.error / one.force), abs(one.stated / one.force), one.distance) for one in found]
 
 
 def measure(quick: bool) -> xr.Dataset:
     """Return the errors of all asperities, from two processes."""
-    rows = [row for part in in_two_processes(rows_of, groups(QUICK if quick else ASPERITIES)) for row in part]
-    columns = zip(COLUMNS.items(), zip(*rows, strict=True), strict=True)
-    return xr.Dataset({name: ("asperity", np.array(values), attributes) for (name, attributes), values in columns})
+    asked = groups(QUICK if quick else ASPERITIES)
+    rows = [row for part in in_two_processes(errors_of, asked) for row in part]
+    labels = zip(*((kind, int(adhesive), seed) for kind, adhesive, seeds in asked for seed in seeds), strict=True)
+    columns = {name: ("asperity", list(each)) for name, each in zip(("shape", "adhesive", "seed"), labels, strict=True)}
+    return xr.Dataset(in_cases(_COLUMNS, rows, "asperity") | columns)
 
 
 def report(result: xr.Dataset) -> str:
