@@ -16,9 +16,8 @@ import click
 import numpy as np
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "pipelines"))
-from oracles.dugdale import FIELDS, Cohesion, State
+from oracles.dugdale import FIELDS, Cohesion, Punch, State
 from oracles.dugdale_curve import CONTROLS, WORKING, Curve, Place
-from oracles.dugdale_punch import Punch
 from oracles.multiprecision import Number, bracket, digits, mp, root
 from oracles.profiles import Parameters, Profile, profile_of
 from references import OUTPUT, head, write, written
@@ -28,10 +27,8 @@ SPRINGS_DIGITS = 30
 WRITTEN = 25
 LAMBDAS = (1e-3, 0.01, 0.03, 0.1, 0.3, 0.6, 0.9, 0.93, 0.95, 1.0, 1.2, 2.0, 3.0, 5.0, 10.0, 30.0, 100.0, 1e3)
 RADII = (0.01, 0.1, 0.3, 0.6, 1.0, 1.5, 3.0, 10.0)
-LIFTED = (0.4, 0.75, 0.95)
-"""Cohesive radii with a = 0, over that at which a begins to grow."""
-ENERGIES = {"tabulated": 1}
-"""How many states of a case have their energy stated; else 2."""
+LIFTED = (0.4, 0.75, 0.95)  # cohesive radii with a = 0, over that at which a begins to grow
+ENERGIES = {"tabulated": 1}  # how many states of a case have their energy stated; else 2
 TINY, SLOPPY, STEP = mp.mpf(10) ** -28, mp.mpf(10) ** -20, mp.mpf(10) ** -14
 _UNEVEN = (0.0, 0.11, 0.2, 0.37, 0.45, 0.7, 0.81, 1.0, 1.3, 1.45, 1.8, 2.4)
 _CONICAL = tuple(x * x if x < 0.5 else x - 0.25 for x in _UNEVEN)

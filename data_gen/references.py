@@ -22,8 +22,7 @@ from oracles.jkr import ENERGY_WRITTEN, WRITTEN, Asperity
 from oracles.multiprecision import Number, digits, mp
 from oracles.profiles import Parameters, knot_slopes, profile_of
 
-WORKING = 100
-"""Digits carried. Next to a corner fold a - b may be 1e-32 of b, so far more than the 40 that are written."""
+WORKING = 100  # digits carried. Next to a corner fold a - b may be 1e-32 of b, so far more than the 40 that are written
 DISTANCES = {
     "indentation": (1e-12, 1e-9, 1e-6, 1e-3, 0.1, 0.9, 1.0, 3.0, 30.0, 1001.0),
     "force": (1e-12, 1e-6, 1e-2, 1.0, 10.0, 1001.0),

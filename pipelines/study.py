@@ -33,8 +33,7 @@ class Done(NamedTuple):
 
     name: str
     seconds: float
-    text: str
-    """Printed report; empty where the study failed."""
+    text: str  # printed report; empty where the study failed
 
     @property
     def row(self) -> list[str]:

@@ -26,14 +26,10 @@ from roughmdr.batch.tasks import split_into_tasks
 from roughmdr.loading.pull_off import PullOff
 
 PARTS = ("reading", "planning", "running")
-CELL_GOAL, MEMORY_GOAL, SPEED_GOAL = 0.3, 500.0, 1.85
-"""[ms] a cell, [MB], times."""
-ASPERITIES, CELLS, WORKERS = 1_000_000_000, 1000, 100
-"""Asperities of a cell; cells; workers of one thread."""
-ENSEMBLE = 1_000_000
-"""Asperities of a realisation."""
-PREFIX = "large_"
-"""Beginning of the attributes of a result that are extrapolated."""
+CELL_GOAL, MEMORY_GOAL, SPEED_GOAL = 0.3, 500.0, 1.85  # [ms] a cell, [MB], times
+ASPERITIES, CELLS, WORKERS = 1_000_000_000, 1000, 100  # asperities of a cell; cells; workers of one thread
+ENSEMBLE = 1_000_000  # asperities of a realisation
+PREFIX = "large_"  # beginning of the attributes of a result that are extrapolated
 _REPEATS = 30
 _STATISTICS = {
     "peak_memory": ("resident memory at most", "byte"),

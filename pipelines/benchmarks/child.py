@@ -18,8 +18,7 @@ from roughmdr.runner.backend import Backend
 from roughmdr.runner.run import execute
 from roughmdr.scene import Scene, read
 
-WORKS = 100
-"""Values of the first swept key; the second one has as many as make the number of cells."""
+WORKS = 100  # values of the first swept key; the second one has as many as make the number of cells
 HEIGHT = {"distribution": "normal", "std": "1 um"}
 
 

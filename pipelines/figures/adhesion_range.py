@@ -9,9 +9,8 @@ from typing import Any, Literal
 
 import numpy as np
 import xarray as xr
-from matplotlib.figure import Figure
 from scipy.stats import norm
-from studies.study import Study, named, without_limits
+from studies.study import Figure, Study, blank, named, without_limits
 
 import roughmdr as rm
 from roughmdr.aggregate.tabor import SHIFT
@@ -47,7 +46,7 @@ def pull_off(points: int) -> xr.Dataset:
              for mu in numbers.tolist()]  # fmt: skip
     return xr.Dataset(
         {"pull_off_force": (("tabor", "control"), force, named("pull-off force", "N"))},
-        coords={"tabor": ("tabor", numbers, {"long_name": "Tabor number"}), "control": list(CONTROLS)},
+        {"tabor": ("tabor", numbers, {"long_name": "Tabor number"}), "control": list(CONTROLS)},
     )
 
 
@@ -61,10 +60,8 @@ def rough(count: int) -> xr.Dataset:
         columns = {"height": ("asperity", quantiles * std), "radius": ("asperity", np.full(count, RADIUS))}
         ensemble = xr.Dataset(columns, attrs={"shape": "paraboloid"})
         path = np.linspace(5.0 * std + WORK / strength(mu), STOPS[j] * std, STEPS)
-        jkr, dugdale = (
-            rm.load_separation(ensemble, separation=path, unload=True, **material(number)).force
-            for number in (math.inf, mu)
-        )
+        asked: dict[str, Any] = {"separation": path, "unload": True}
+        jkr, dugdale = (rm.load_separation(ensemble, **asked, **material(number)).force for number in (math.inf, mu))
         error[i, j, k] = abs(jkr - dugdale).max() / max(float(abs(dugdale).max()), _TINY)
     dims = ("roughness", "stop", "rough_tabor")
     return xr.Dataset(
@@ -86,7 +83,7 @@ def measure(quick: bool) -> xr.Dataset:
 
 def draw(result: xr.Dataset) -> Figure:
     """Draw curves, pull-off forces, and the error of JKR."""
-    figure = Figure(figsize=(15, 4.6), layout="constrained")
+    figure = blank(15, 4.6)
     curves, off, error = figure.subplots(1, 3)
     scale, depth = math.pi * WORK * RADIUS, -float(rm.pull_off(TIP, **_MATERIAL, control="displacement").indentation)
     for i, mu in enumerate((*SHOWN, math.inf)):

@@ -4,9 +4,8 @@ from typing import Any
 
 import numpy as np
 import xarray as xr
-from matplotlib.figure import Figure
-from studies.comparison import law_of
-from studies.study import Study, named
+from studies.comparison import law_of, panels
+from studies.study import Figure, Study, named
 
 import roughmdr as rm
 
@@ -51,8 +50,7 @@ def measure(quick: bool) -> xr.Dataset:
 
 def draw(result: xr.Dataset) -> Figure:
     """Draw forces over the separation, and over that of independent asperities."""
-    figure = Figure(figsize=(10, 4.4), layout="constrained")
-    left, right = figure.subplots(1, 2)
+    figure, (left, right) = panels(10, 4.4, 2)
     alone = result["force"].sel(model="independent")
     for name, colour in zip(MODELS, COLOURS, strict=True):
         own = result.sel(model=name)
@@ -61,8 +59,6 @@ def draw(result: xr.Dataset) -> Figure:
     left.set(xlabel="separation [µm]", ylabel="force [mN]", title="2000 paraboloids on 1 mm²")
     right.set(xlabel="contact area [% of the patch]", ylabel="force over that of independent asperities")
     left.legend(fontsize=9)
-    for panel in (left, right):
-        panel.grid(color="0.92")
     return figure
 
 

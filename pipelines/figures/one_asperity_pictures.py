@@ -2,9 +2,7 @@
 
 import numpy as np
 import xarray as xr
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
-from studies.study import Draw, Study
+from studies.study import Axes, Draw, Figure, Study, blank
 
 import roughmdr as rm
 from figures.drawing import COMPRESSED, STRETCHED, draw_axes, draw_body, draw_jump, draw_length, draw_springs
@@ -22,7 +20,7 @@ def draw_two_steps(result: xr.Dataset) -> Figure:
     a0, d0 = float(result.touch_radius), float(result.touch_depth)
     cone, inside = rm.Cone(slope=result.attrs["slope"]), int(result.attrs["springs_inside"])
     number = result.spring.to_numpy()
-    figure = Figure(figsize=(13, 4.6), layout="constrained")
+    figure = blank(13, 4.6)
     for ax, (name, title) in zip(figure.subplots(1, 3), _STEPS.items(), strict=True):
         stage = result.sel(stage=name)
         a, delta = float(stage.stage_contact_radius) / a0, float(stage.stage_indentation) / d0
@@ -74,7 +72,7 @@ _KNOWN = {  # under fixed grips and under dead load
 
 def draw_pull_off_curves(result: xr.Dataset) -> Figure:
     """Draw for each shape the force over its pull-off force under dead load, against depth over that at pull-off."""
-    figure = Figure(figsize=(13, 4.8), layout="constrained")
+    figure = blank(13, 4.8)
     for ax, name in zip(figure.subplots(1, 3, sharey=True), result["shape"].to_numpy(), strict=True):
         shape = result.sel(shape=name)
         grips, dead_load = (shape.sel(control=control) for control in ("displacement", "force"))
@@ -110,7 +108,7 @@ def draw_pull_off_curves(result: xr.Dataset) -> Figure:
 
 def draw_shape_and_pull_off(result: xr.Dataset) -> Figure:
     """Draw the pull-off force over that of a flat face of the same width, against the exponent, with the worst ones."""
-    figure = Figure(figsize=(7.6, 5.0), layout="constrained")
+    figure = blank(7.6, 5.0)
     ax = figure.subplots()
     for color, ratio in zip((COMPRESSED, STRETCHED, "#3b7a57"), result.relative_stretch.to_numpy(), strict=True):
         for control, style in (("force", "-"), ("displacement", "--")):
@@ -136,12 +134,8 @@ def draw_shape_and_pull_off(result: xr.Dataset) -> Figure:
 
 
 PICTURES: dict[str, Draw] = {
-    "two_steps": draw_two_steps,
-    "pull_off_curves": draw_pull_off_curves,
-    "shape_and_pull_off": draw_shape_and_pull_off,
-}
-
-
+    "two_steps": draw_two_steps, "pull_off_curves": draw_pull_off_curves, "shape_and_pull_off": draw_shape_and_pull_off
+}  # fmt: skip
 STUDY = Study(
     "one_asperity", "One asperity under JKR adhesion", measure, PICTURES, report, f"{QUICK} of {POINTS} shapes"
 )

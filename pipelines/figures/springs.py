@@ -9,10 +9,8 @@ from typing import Any
 
 import numpy as np
 import xarray as xr
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 from numpy.typing import NDArray
-from studies.study import Draw, Study, named, without_limits
+from studies.study import Axes, Draw, Figure, Study, blank, named, without_limits
 
 import roughmdr as rm
 from figures.drawing import COMPRESSED, STRETCHED, draw_axes, draw_body, draw_length, draw_springs
@@ -56,9 +54,8 @@ _STAGES = {
 def row_of_springs(points: int = 2401) -> xr.Dataset:
     """Return a paraboloid on a coarse row, loading and unloading, beside the exact force; the row at three points."""
     tip = rm.Paraboloid(radius=RADIUS)
-    loading = -float(rm.pull_off(tip, **_MATERIAL, control="displacement").indentation) * np.linspace(
-        -1.45, 2.2, points
-    )
+    depth_of_fold = -float(rm.pull_off(tip, **_MATERIAL, control="displacement").indentation)
+    loading = depth_of_fold * np.linspace(-1.45, 2.2, points)
     path = np.append(loading, loading[-2::-1])
     contact = Springs.of(tip, MODULUS, WORK, DRAWN)
     state = contact.follow(path)
@@ -148,16 +145,15 @@ def report(result: xr.Dataset) -> str:
     for name in result["shape"].to_numpy():
         for model in result.adhesion.to_numpy():
             one = last.sel(shape=name, adhesion=model)
-            lines.append(
-                f"{name:<21} {model:<5} force: order {float(one.force_order):.2f}, error {float(one.force_error):.1e} "
-                f"with {int(one.springs)} springs; radius: order {float(one.radius_order):.2f}"
-            )
+            error = f"error {float(one.force_error):.1e} with {int(one.springs)} springs"
+            of_force, of_radius = f"order {float(one.force_order):.2f}", f"order {float(one.radius_order):.2f}"
+            lines.append(f"{name:<21} {model:<5} force: {of_force}, {error}; radius: {of_radius}")
     return "\n".join(lines)
 
 
 def draw_row(result: xr.Dataset) -> Figure:
     """Draw the row at three points of its path, and the path over the exact one; lengths in micrometres."""
-    figure = Figure(figsize=(15, 7.6), layout="constrained")
+    figure = blank(15, 7.6)
     grid = figure.add_gridspec(1, 2, width_ratios=[1.25, 1.0])
     rows, path = figure.add_subfigure(grid[0]), figure.add_subfigure(grid[1])
     axes = rows.subplots(3, 1, sharex=True)
@@ -212,7 +208,7 @@ def _draw_path(ax: Axes, result: xr.Dataset) -> None:
 
 def draw_errors(result: xr.Dataset) -> Figure:
     """Draw the errors of each shape against the number of springs."""
-    figure = Figure(figsize=(16, 8.5), layout="constrained")
+    figure = blank(16, 8.5)
     axes = figure.subplots(3, 4, sharex=True, sharey=True)
     for ax, name in zip(axes.flat, result["shape"].to_numpy(), strict=False):
         for (model, color), quantity in itertools.product(_COLORS.items(), ("force", "radius")):
@@ -234,8 +230,6 @@ def draw_errors(result: xr.Dataset) -> Figure:
 
 
 PICTURES: dict[str, Draw] = {"springs_row": draw_row, "springs_error": draw_errors}
-
-
 STUDY = Study(
     "springs", "One asperity as a row of springs", measure, PICTURES, report,
     f"rows of up to {max(QUICK)} of {max(COUNTS)} springs",

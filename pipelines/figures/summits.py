@@ -11,10 +11,8 @@ from typing import Any
 
 import numpy as np
 import xarray as xr
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 from oracles.gaussian_maps import Series, gaussian_map, wave_numbers, wave_variances
-from studies.study import Study, named
+from studies.study import Axes, Figure, Study, blank, named
 
 from roughmdr.ensemble.gaussian.summit_distribution import SummitDistribution, Summits, product_density
 from roughmdr.ensemble.maps.height_map import HeightMap
@@ -131,13 +129,10 @@ def report(result: xr.Dataset) -> str:
     """Return the statistics of the sample beside those of the maps, and the bias of the fit to neighbours."""
     lines = []
     for name, (unit, text) in STATISTICS.items():
-        sampled, detected, error = (
-            float(result[part].sel(statistic=name)) for part in ("sampled", "detected", "error")
-        )
-        off = (sampled - detected) / error
-        lines.append(
-            f"{text:<40} sampled {sampled:.5g}, on maps {detected:.5g} ± {error:.2g} {unit}: {off:+.1f} errors"
-        )
+        own = result.sel(statistic=name)
+        sampled, detected, error = float(own.sampled), float(own.detected), float(own.error)
+        on_maps, off = f"{detected:.5g} ± {error:.2g} {unit}", (sampled - detected) / error
+        lines.append(f"{text:<40} sampled {sampled:.5g}, on maps {on_maps}: {off:+.1f} errors")
     for name in FITTED:
         biases = ", ".join(f"{100.0 * value:+.2f} %" for value in result.bias.sel(statistic=name).to_numpy())
         lines.append(f"{STATISTICS[name][1]:<40} fit to neighbours off by {biases}")
@@ -147,7 +142,7 @@ def report(result: xr.Dataset) -> str:
 def draw(result: xr.Dataset) -> Figure:
     """Draw the distribution beside the summits of the maps, and the bias of the fit to neighbours."""
     distribution = distribution_of_maps()
-    figure = Figure(figsize=(11, 8), layout="constrained")
+    figure = blank(11, 8)
     heights, curvatures, conditional, bias = figure.subplots(2, 2).ravel()
     moments = distribution.moments
     rms, unit = math.sqrt(moments.m0), math.sqrt(moments.m4)

@@ -28,23 +28,17 @@ _MAX_ITERATIONS = 5000
 class Adhered(NamedTuple):
     """The state at one separation."""
 
-    force: float
-    """Pressure less attraction over the patch: compression > 0."""
-    closed: float
-    """Area where the gap is 0."""
-    attracted: float
-    """Area where the gap is less than the range, which holds the closed one."""
-    energy: float
-    """Elastic energy less the work of adhesion of the area; 0 far away."""
+    force: float  # pressure less attraction over the patch: compression > 0
+    closed: float  # area where the gap is 0
+    attracted: float  # area where the gap is less than the range, which holds the closed one
+    energy: float  # elastic energy less the work of adhesion of the area; 0 far away
 
 
 class _Balance(NamedTuple):
     """Tractions of the grid cells."""
 
-    pull: Floats
-    """The attraction."""
-    slope: Floats
-    """Elastic traction and attraction together, which where the gap is 0 the pressure takes up."""
+    pull: Floats  # the attraction
+    slope: Floats  # elastic traction and attraction together, which where the gap is 0 the pressure takes up
 
     @property
     def mean(self) -> float:

@@ -14,10 +14,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.ndimage import label
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
 
+from roughmdr.elements.half_space import connected
 from roughmdr.errors import OutOfRange
 from roughmdr.numerics.arguments import Floats
 
@@ -30,10 +28,8 @@ _EDGE_SHARE = (math.pi - 1.0 + math.log(2.0)) / 24.0  # share of cells a side at
 class Pressed(NamedTuple):
     """The state at one separation."""
 
-    force: float
-    """[N]"""
-    contact_area: float
-    """[m2], of all grid cells under pressure; ``by_perimeter`` has a better one"""
+    force: float  # [N]
+    contact_area: float  # [m2], of all grid cells under pressure; by_perimeter has a better one
 
 
 class HeightMap:
@@ -101,13 +97,7 @@ def by_perimeter(pressure: Floats) -> float:
 
 def label_contacts(pressure: Floats) -> NDArray[np.int64]:
     """Return the number of each cell's contact, 0 outside; cells that share a side, across the rim too, are in one."""
-    labels, count = label(pressure > 0.0)
-    rims = [(labels[0], labels[-1]), (labels[:, 0], labels[:, -1])]
-    one, other = (np.concatenate(side) for side in zip(*rims, strict=True))
-    both = (one > 0) & (other > 0)
-    joined = coo_array((np.ones(both.sum()), (one[both], other[both])), shape=(count + 1, count + 1))
-    merged = connected_components(joined, directed=False)[1].astype(np.int64)
-    return np.asarray(np.where(labels > 0, merged[labels] + 1, 0))
+    return connected(pressure > 0.0, across=True)[0]
 
 
 def of_half_ellipsoids(pressure: Floats) -> float:

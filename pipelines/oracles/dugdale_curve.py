@@ -12,11 +12,9 @@ from oracles.multiprecision import Number, bracket, mp, radius_between, root
 from oracles.profiles import Floats, Profile
 
 WORKING = 55
-DIGITS = 45
-"""Digits of the integrals; the folds are right to a few less."""
+DIGITS = 45  # digits of the integrals; the folds are right to a few less
 CONTROLS = ("displacement", "force")
-NEAREST = 1e-9
-"""A state closer to its fold is left out: a double does not distinguish it from the fold."""
+NEAREST = 1e-9  # a state closer to its fold is left out: a double does not distinguish it from the fold
 
 
 class Fold(NamedTuple):

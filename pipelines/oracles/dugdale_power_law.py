@@ -14,7 +14,7 @@ from collections.abc import Callable, Iterator
 from functools import cached_property
 
 from oracles.dugdale import Dugdale, Integrals, State
-from oracles.jkr_power_law import JkrPowerLaw, PowerShape
+from oracles.jkr import JkrPowerLaw, PowerShape
 from oracles.multiprecision import Number, mp, root
 
 _DECADES = (-9, -7, *(i / 2 for i in range(-10, 9)), 6, 8, 10, 12)

@@ -7,11 +7,9 @@ Profiles are integrals over f' in closed form, none of them as the kernels write
 from collections.abc import Callable
 
 import roughmdr as rm
-from oracles.jkr import Asperity
-from oracles.jkr_power_law import JkrPowerLaw, PowerShape
-from oracles.mdr_tables import MdrTableProfile
+from oracles.jkr import Asperity, JkrPowerLaw, PowerShape
 from oracles.multiprecision import Number, mp
-from oracles.profiles import Profile, closed_profile
+from oracles.profiles import closed_profile
 from roughmdr.shapes import Shape
 
 _STEP = mp.mpf("1e-15")  # relative, of the first secant
@@ -43,11 +41,7 @@ class ExactContact:
         if isinstance(shape, PowerShape):
             self.asperity: Asperity = JkrPowerLaw(shape, effective_modulus, work)
         else:
-            if isinstance(shape, rm.MdrTable):
-                profile: Profile = MdrTableProfile(shape.radii, shape.indentations)
-            else:
-                profile = closed_profile(shape)
-            self.asperity = Asperity(profile, effective_modulus, work, shape.nondimensional()[0])
+            self.asperity = Asperity(closed_profile(shape), effective_modulus, work, shape.nondimensional()[0])
 
     def at(self, t: Number) -> dict[str, Number]:
         """Return the equilibrium at t, with the digits that differences lose next to a corner or an equator."""

@@ -11,20 +11,16 @@ from typing import NamedTuple
 
 from mpmath import mp, mpf
 
-Quantity = Callable[[mpf, mpf], mpf]
-"""A quantity of a contact of radius a [m] of a tip of radius R [m]."""
+Quantity = Callable[[mpf, mpf], mpf]  # a quantity of a contact of radius a [m] of a tip of radius R [m]
 
 
 class Rough(NamedTuple):
     """Paraboloids whose heights are "normal" about 0 or "exponential" from 0 upwards; all in SI units."""
 
     heights: str
-    std: float
-    """Standard deviation of the heights [m]."""
-    radius: float
-    """Mean radius of the tips [m]."""
-    radius_std: float
-    """Standard deviation of the lognormal radius [m]; 0 for equal tips."""
+    std: float  # standard deviation of the heights [m]
+    radius: float  # mean radius of the tips [m]
+    radius_std: float  # standard deviation of the lognormal radius [m]; 0 for equal tips
     effective_modulus: float
     work: float = 0.0
 

@@ -61,8 +61,7 @@ class Series:
     """h(x, y) = sum of amplitudes exp(i (qx x + qy y)) over -order..order waves along each side of a square."""
 
     amplitudes: NDArray[np.complex128]
-    size: float
-    """[m]."""
+    size: float  # [m]
 
     @classmethod
     def of(cls, height: Floats, size: float, order: int) -> "Series":

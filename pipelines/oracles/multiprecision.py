@@ -10,8 +10,7 @@ import mpmath
 mp = mpmath.mp.clone()
 mp.dps = 60
 
-Number: TypeAlias = Any
-"""A number of any precision; mpmath carries no types."""
+Number: TypeAlias = Any  # a number of any precision; mpmath carries no types
 _SMALL = mp.mpf(10) ** -52
 
 

@@ -47,10 +47,8 @@ def periodic_green(x: Floats, y: Floats, size: float, effective_modulus: float) 
 class State(NamedTuple):
     """The ensemble at one separation."""
 
-    force: float
-    """[N]"""
-    contact_area: float
-    """[m2]"""
+    force: float  # [N]
+    contact_area: float  # [m2]
     contact_count: int
 
 

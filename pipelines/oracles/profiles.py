@@ -7,16 +7,16 @@ from functools import cache
 from typing import Any, TypeAlias
 
 import numpy as np
+from mpmath.calculus.quadrature import GaussLegendre
 from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
 from oracles.multiprecision import Number, mp, tanh_sinh
-from roughmdr.shapes import Shape, Tabulated
+from roughmdr.shapes import MdrTable, Shape, Tabulated
 
 Floats: TypeAlias = NDArray[np.float64]
 Parameters: TypeAlias = dict[str, Any]
-Terms: TypeAlias = tuple[tuple[Number, float], ...]
-"""Coefficients and powers."""
+Terms: TypeAlias = tuple[tuple[Number, float], ...]  # coefficients and powers
 
 
 @dataclass(frozen=True)
@@ -55,8 +55,7 @@ def antiderivatives(psi: Number) -> list[tuple[Number, Number]]:
 class Profile:
     """A profile given by f' alone, piecewise a sum of powers: any powers, or 0, 1, 2 where there are several pieces."""
 
-    end: Number | None = None
-    """Radius at which the profile becomes vertical [m], or None."""
+    end: Number | None = None  # radius at which the profile becomes vertical [m], or None
 
     def __init__(self, pieces: list[Piece], corners: list[tuple[Number, Number]] | None = None) -> None:
         self.pieces = pieces
@@ -140,8 +139,75 @@ class SphereProfile(Profile):
         return a * angle, angle + a * R / gap, (R * a - gap * angle) / 2
 
 
+class MdrTableProfile(Profile):
+    """g at rising radii [m], between them the monotone cubic in a^2 of F. N. Fritsch and J. Butland (1984).
+
+    G is by a Gauss rule that is exact for it.
+    """
+
+    def __init__(self, a: Floats, g: Floats) -> None:
+        super().__init__([])
+        self.s = [mp.mpf(0), *(mp.mpf(each) ** 2 for each in a.tolist())]
+        self.g = [mp.mpf(0), *map(mp.mpf, g.tolist())]
+        self.slopes = _table_slopes(self.s, self.g)
+
+    @property
+    def kinks(self) -> list[Number]:
+        """Radii at which a piece ends [m]."""
+        return [mp.sqrt(s) for s in self.s[1:]]
+
+    def mdr(self, a: Number) -> tuple[Number, Number, Number]:
+        """Return g(a) [m], g'(a) [1] and G(a) [m2]."""
+        ends = [mp.mpf(0), *(b for b in self.kinks if b < a), a]
+        G = mp.fsum(
+            (high - low) / 2 * w * self._value_and_slope(low + (high - low) / 2 * (1 + x))[0]
+            for low, high in itertools.pairwise(ends)
+            for x, w in _gauss(mp.prec)
+        )
+        g, slope = self._value_and_slope(a)
+        return g, 2 * a * slope, G
+
+    def _value_and_slope(self, a: Number) -> tuple[Number, Number]:
+        """Return g and dg/da^2."""
+        s = a * a
+        if s >= self.s[-1]:
+            return self.g[-1] + self.slopes[-1] * (s - self.s[-1]), self.slopes[-1]
+        k = max(i for i, begin in enumerate(self.s) if begin <= s)
+        h, rise = self.s[k + 1] - self.s[k], self.g[k + 1] - self.g[k]
+        u, left, right = (s - self.s[k]) / h, self.slopes[k], self.slopes[k + 1]
+        blend = u * u * (3 - 2 * u)
+        value = self.g[k] + rise * blend + h * (left * u * (1 - u) ** 2 - right * u * u * (1 - u))
+        slope = 6 * u * (1 - u) * rise / h + left * (1 - u) * (1 - 3 * u) + right * u * (3 * u - 2)
+        return value, slope
+
+
+@cache
+def _gauss(precision: int) -> list[tuple[Number, Number]]:
+    """Return six nodes and weights on -1 to 1, to so many bits."""
+    return [(x, w) for x, w in GaussLegendre(mp).calc_nodes(2, precision)]
+
+
+def _table_slopes(s: list[Number], g: list[Number]) -> list[Number]:
+    """Return dg/ds at each point: weighted harmonic means, at the ends those of a parabola, kept from the chord."""
+    h = [b - a for a, b in itertools.pairwise(s)]
+    chord = [(b - a) / each for (a, b), each in zip(itertools.pairwise(g), h, strict=True)]
+    if len(h) == 1:
+        return [chord[0], chord[0]]
+    inner = [
+        3 * (a + b) / ((a + 2 * b) / left + (2 * a + b) / right)
+        for (a, b), (left, right) in zip(itertools.pairwise(h), itertools.pairwise(chord), strict=True)
+    ]
+    ends = []
+    for one, two, first, second in ((h[0], h[1], chord[0], chord[1]), (h[-1], h[-2], chord[-1], chord[-2])):
+        parabola = ((2 * one + two) * first - one * second) / (one + two)
+        ends.append(min(max(parabola, first / 2), 2 * first))
+    return [ends[0], *inner, ends[1]]
+
+
 def closed_profile(shape: Shape) -> Profile:
     """Return the profile of a shape that is not a flat punch."""
+    if isinstance(shape, MdrTable):
+        return MdrTableProfile(shape.radii, shape.indentations)
     if isinstance(shape, Tabulated):
         columns = {name: column.tolist() for name, column in shape.parameters.items()}
         return profile_of(shape.name, columns, shape.knot_slopes.tolist())

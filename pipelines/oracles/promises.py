@@ -5,11 +5,10 @@ from typing import NamedTuple
 
 from oracles.dugdale import FIELDS, State
 from oracles.dugdale_power_law import DugdalePowerLaw
-from oracles.jkr_power_law import JkrPowerLaw
+from oracles.jkr import JkrPowerLaw
 from oracles.multiprecision import Number, mp
 
-Results = Mapping[str, float]
-"""The variables of ``rm.indent`` for one contact, by name."""
+Results = Mapping[str, float]  # the variables of rm.indent for one contact, by name
 UNIT = mp.mpf(2) ** -53
 _MIN, _MAX = mp.mpf("1e-299"), mp.mpf("1e299")
 _ROUNDINGS = 32 * UNIT  # error of the control and of its two terms, with adhesion of finite range
@@ -18,8 +17,7 @@ _ROUNDINGS = 32 * UNIT  # error of the control and of its two terms, with adhesi
 class Judged(NamedTuple):
     """The error of one result."""
 
-    error: float
-    """Over the natural scale of the quantity."""
+    error: float  # over the natural scale of the quantity
     allowed: float
 
     @property

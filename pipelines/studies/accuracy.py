@@ -40,15 +40,13 @@ SCENES = {
     "Hertz, 8 asperities, exponential heights": scene_of(8, {"distribution": "expon", "std": "1 um"}),
 }
 REALIZATIONS, RUNS = {False: 25_000, True: 4000}, {False: 200, True: 40}
-MINIMAL_COUNTS = (50, 200, 500, 1000, 4000)
-"""Realisations that the errors asked for need at least."""
+MINIMAL_COUNTS = (50, 200, 500, 1000, 4000)  # realisations that the errors asked for need at least
 
 
 class ForceSamples(NamedTuple):
     """The force of many realisations of a scene."""
 
-    force: Floats
-    """[N], [realization, step]."""
+    force: Floats  # [N], [realization, step]
 
     def kurtosis(self) -> float:
         """Return the kurtosis of the force at the step where it varies most; 3 for a normal distribution."""

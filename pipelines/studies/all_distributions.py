@@ -31,8 +31,7 @@ _RTOL_REFERENCE = 3e-2  # references with larger errors judge nothing
 class Scene(NamedTuple):
     """A distribution of heights or radii, and separations of the flat."""
 
-    of: str
-    """"heights" or "radii"."""
+    of: str  # "heights" or "radii"
     family: str
     parameters: dict[str, float]
     loc: float
@@ -78,8 +77,7 @@ class Verdict(NamedTuple):
     """An expected curve beside its reference; errors are relative to the largest force."""
 
     scene: Scene
-    outcome: str
-    """"right", "wrong", "refused" or "no reference"."""
+    outcome: str  # "right", "wrong", "refused" or "no reference"
     error: float
     stated: float
     remark: str = ""

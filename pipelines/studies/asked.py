@@ -16,10 +16,8 @@ from roughmdr.batch.stopping_rule import FEWEST
 from studies.study import Figure, Study, blank, in_two_processes, named, table, timed, without_limits
 
 SEED = 11
-REQUESTS = {False: tuple(range(40)), True: (12, 30, 32)}
-"""Numbers of the requests in full and in reduced form."""
-_MANY, _FEW = 1000, 6
-"""Realisations of independent asperities, and of those by which they are corrected."""
+REQUESTS = {False: tuple(range(40)), True: (12, 30, 32)}  # numbers of the requests in full and in reduced form
+_MANY, _FEW = 1000, 6  # realisations of independent asperities, and of those by which they are corrected
 _PATCH = 1e-4  # side of the patch [m]
 _KINDS = ("random", "random", "random", "jkr", "spectrum")
 _QUANTITIES = ("contact_area", "contact_area", "stiffness", "separation", "force")

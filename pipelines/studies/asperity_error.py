@@ -21,8 +21,7 @@ from roughmdr.shapes import SHAPES, Shape
 from studies.comparison import in_cases
 from studies.study import Study, in_two_processes, table, without_limits
 
-NEAREST = 1e-12
-"""Smallest distance to a fold, over its depth."""
+NEAREST = 1e-12  # smallest distance to a fold, over its depth
 _PRESSED = 1e3  # depths beyond first touch, to which some are pressed first
 _MIN_FORCE = 1e-290
 _TRIES = 50
@@ -30,14 +29,14 @@ ASPERITIES, QUICK = 100_000, 480
 _GROUP_SIZE = 100
 _WEIGHT = {"tabulated": 0.2}  # share of cases of a shape, else 1: its reference is slow
 _MODELS = ("none", "JKR")
+_LABELS = {"shape": "shape of the asperity", "adhesive": "1 with JKR adhesion", "seed": "number of the asperity"}
 _COLUMNS = {
     "true_error": ("true error of the force", "1"),
     "stated_error": ("bound on it", "1"),
     "distance": ("distance to the end of the branch", "1"),
 }
 Rng = np.random.Generator
-Group = tuple[str, bool, range]
-"""Some asperities: shape, whether with adhesion, and their numbers."""
+Group = tuple[str, bool, range]  # some asperities: shape, whether with adhesion, and their numbers
 
 
 def power_of_ten(rng: Rng, low: float, high: float) -> float:
@@ -113,8 +112,7 @@ class ForceError(NamedTuple):
     work: float
     height: float
     path: list[float]
-    error: float
-    """The true error of the force, of the sum over this asperity alone."""
+    error: float  # the true error of the force, of the sum over this asperity alone
     stated: float
     force: float
     distance: float
@@ -270,7 +268,8 @@ def measure(quick: bool) -> xr.Dataset:
     asked = groups(QUICK if quick else ASPERITIES)
     rows = [row for part in in_two_processes(errors_of, asked) for row in part]
     labels = zip(*((kind, int(adhesive), seed) for kind, adhesive, seeds in asked for seed in seeds), strict=True)
-    columns = {name: ("asperity", list(each)) for name, each in zip(("shape", "adhesive", "seed"), labels, strict=True)}
+    columns = {name: ("asperity", list(each), {"long_name": words})
+               for (name, words), each in zip(_LABELS.items(), labels, strict=True)}  # fmt: skip
     return xr.Dataset(in_cases(_COLUMNS, rows, "asperity") | columns)
 
 

@@ -22,12 +22,10 @@ from studies.versus_adhesive_bem.cases import Case as Adhering
 from studies.versus_bem.ensembles import Case
 from studies.versus_bem.ensembles import separations as of_asperities
 
-SEED = 2027
-"""Seed of the surfaces; those of seed 7 have set the constants."""
+SEED = 2027  # seed of the surfaces; those of seed 7 have set the constants
 FRACTIONS = np.array([0.003, 0.006, 0.012, 0.025, 0.05, 0.1, 0.15])
 """Contact fractions at which surfaces are pressed, about."""
-SURFACES = {False: 45, True: 3}
-"""Number of surfaces in full and in reduced form."""
+SURFACES = {False: 45, True: 3}  # number of surfaces in full and in reduced form
 _LOADS = {"pressed": (0.25, np.inf), "no load": (-0.25, 0.25), "tension": (-np.inf, -0.25)}
 """Least and largest load over the largest tension."""
 _POINTS = {False: 384, True: 96}

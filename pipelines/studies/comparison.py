@@ -10,10 +10,8 @@ import roughmdr as rm
 from roughmdr.numerics.arguments import Floats
 from studies.study import Axes, Figure, blank, named, without_limits
 
-Variable = tuple[tuple[str, ...], Floats, dict[str, str]]
-"""Dimensions, values and attributes."""
-FACTOR = 3.0
-"""Largest ratio of the stated and the true error, either way, at which the stated one is near."""
+Variable = tuple[tuple[str, ...], Floats, dict[str, str]]  # dimensions, values and attributes
+FACTOR = 3.0  # largest ratio of the stated and the true error, either way, at which the stated one is near
 PAIRS: dict[int, Any] = {order: {"model": "pairwise", "order": order} for order in (1, 2)}
 """Interactions in pairs, by their order."""
 INTERACTIONS: dict[str, Any] = {
@@ -82,10 +80,8 @@ class Held(NamedTuple):
     """Stated errors beside true ones."""
 
     number: int
-    bounded: float
-    """Share of the errors that the stated one bounds."""
-    within: float
-    """Share of the errors that are within FACTOR of the stated one."""
+    bounded: float  # share of the errors that the stated one bounds
+    within: float  # share of the errors that are within FACTOR of the stated one
 
     @property
     def cells(self) -> list[str]:
@@ -93,8 +89,7 @@ class Held(NamedTuple):
         return [str(self.number), *(f"{100.0 * share:.0f} %" for share in self[1:])]
 
 
-HELD = ["errors", "below the estimate", f"within a factor of {FACTOR:g}"]
-"""Heads of the cells."""
+HELD = ["errors", "below the estimate", f"within a factor of {FACTOR:g}"]  # heads of the cells
 
 
 def bounds(error: Floats, stated: Floats, unknown: Floats | float = 0.0) -> tuple[Any, Any]:

@@ -19,8 +19,7 @@ from studies.study import Figure, Study, in_two_processes, table, without_limits
 from studies.surfaces import surface_of
 from studies.versus_bem.ensembles import Case
 
-FRACTIONS = np.array([0.001, 0.003, 0.01, 0.03, 0.06, 0.1])
-"""Contact fractions by boundary elements, about."""
+FRACTIONS = np.array([0.001, 0.003, 0.01, 0.03, 0.06, 0.1])  # contact fractions by boundary elements, about
 _SEARCHED = 16  # separations among which those of the contact fractions are looked for
 _DIFFERENCE = 0.02  # change of the separation, over the depth of the flat below the highest summit
 _LAW = ("conductance_radius", "contact_fraction", "conductance_error", "overlap_fraction")

@@ -35,11 +35,9 @@ MODELS: dict[str, Any] = {"independent": None, "coupled": PAIRS[2]}
 class Surface(NamedTuple):
     """Equal paraboloids of normal heights that keep a distance."""
 
-    spread: float
-    """Standard deviation of the heights over the pull-off length."""
+    spread: float  # standard deviation of the heights over the pull-off length
     asperities: int
-    distance: float
-    """The side of the area for each asperity over the jump-on radius."""
+    distance: float  # the side of the area for each asperity over the jump-on radius
 
     def generate(self, realization: int) -> xr.Dataset:
         """Return a realisation."""
@@ -56,19 +54,13 @@ class Surface(NamedTuple):
 class Cycle(NamedTuple):
     """Numbers of a loading and unloading."""
 
-    pull_off_force: float
-    """[N], < 0, located between the steps."""
+    pull_off_force: float  # [N], < 0, located between the steps
     pull_off_contacts: float
-    contacts: float
-    """At closest approach."""
-    contact_fraction: float
-    """At closest approach."""
-    dissipated_energy: float
-    """[J]"""
-    avalanche: float
-    """Contacts in the largest avalanche, 1 where all are independent."""
-    marked: float
-    """Steps at which contacts are too near each other for a coupling in pairs."""
+    contacts: float  # at closest approach
+    contact_fraction: float  # at closest approach
+    dissipated_energy: float  # [J]
+    avalanche: float  # contacts in the largest avalanche, 1 where all are independent
+    marked: float  # steps at which contacts are too near each other for a coupling in pairs
 
 
 def cycle(ensemble: xr.Dataset, interaction: Any, steps: int) -> Cycle:

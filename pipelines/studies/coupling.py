@@ -40,10 +40,8 @@ class Point(NamedTuple):
 
     method: str
     setting: str
-    error: float
-    """Largest relative error of the force over the loads."""
-    seconds: float
-    """A load."""
+    error: float  # largest relative error of the force over the loads
+    seconds: float  # a load
 
 
 def coupled(ensemble: xr.Dataset, separation: Floats, interaction: Any, dense: bool = True) -> Floats:

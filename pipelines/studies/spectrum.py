@@ -10,8 +10,7 @@ from roughmdr.ensemble.spectral.section import SpectrumAsperities
 from studies.study import Figure, Study, blank, named, table, without_limits
 
 HURST = (0.3, 0.5, 0.8)
-SHARES = (2.5, 2.0, 1.5, 1.0)
-"""Separations over the r.m.s. height."""
+SHARES = (2.5, 2.0, 1.5, 1.0)  # separations over the r.m.s. height
 METHODS = ("nayak", "nayak in pairs", "summits in pairs", "hills in pairs", "boundary elements")
 REALIZATIONS, QUICK = 64, 4
 _SIDE, _LONG, _SHORT = 1e-4, 5e-5, 6e-6

@@ -27,24 +27,18 @@ else:  # matplotlib is loaded where something is drawn
 __all__ = ["Axes", "Draw", "Figure", "Study", "blank", "in_two_processes", "named", "table", "timed",
            "without_limits"]  # fmt: skip
 Draw: TypeAlias = Callable[[xr.Dataset], Figure]
-REDUCED = "Reduced form: "
-"""Begins the line of a report that says what its study leaves out."""
+REDUCED = "Reduced form: "  # begins the line of a report that says what its study leaves out
 
 
 class Study(NamedTuple):
     """A study or a figure, given by its functions."""
 
-    name: str
-    """Name of its command and of its files."""
+    name: str  # name of its command and of its files
     title: str
-    measure: Callable[[bool], xr.Dataset]
-    """Return all numbers; a reduced form, in seconds, where the argument is true."""
-    draw: Draw | dict[str, Draw]
-    """The picture NAME.png, or several pictures by their names."""
-    report: Callable[[xr.Dataset], str]
-    """Return a few sentences and tables in Markdown."""
-    reduced: str
-    """Part of the full form that the reduced one has."""
+    measure: Callable[[bool], xr.Dataset]  # return all numbers; a reduced form, in seconds, where the argument is true
+    draw: Draw | dict[str, Draw]  # the picture NAME.png, or several pictures by their names
+    report: Callable[[xr.Dataset], str]  # return a few sentences and tables in Markdown
+    reduced: str  # part of the full form that the reduced one has
 
     def carry_out(self, output: Path, quick: bool) -> str:
         """Measure, write all files to the folder ``output``, and return the report; all say where they are reduced."""

@@ -19,10 +19,8 @@ class Surface(NamedTuple):
     """A surface, and the asperities that stand for it by their group."""
 
     ensembles: dict[str, xr.Dataset]
-    height: Floats
-    """[side], on the grid of boundary elements."""
-    side: float
-    """[m]"""
+    height: Floats  # [side], on the grid of boundary elements
+    side: float  # [m]
     periodic: bool
 
     def elements(self, coarser: int = 1) -> BoundaryElements:

@@ -106,8 +106,7 @@ class Outcome(NamedTuple):
 
     exit_status: int
     outcome: str
-    trusted: bool
-    """Whether the run, if it ended well, and its plan said how far the force can be trusted."""
+    trusted: bool  # whether the run, if it ended well, and its plan said how far the force can be trusted
     contact_fraction: float
     model_error: float
 

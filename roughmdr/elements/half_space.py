@@ -138,7 +138,7 @@ class BoundaryElements:
     def patches(self) -> Patches:
         """Return the connected contacts, with the mean share of the cells at their edges taken off."""
         loaded = self.pressure > 0.0
-        labels, count = _connected(loaded, across=self.periodic)
+        labels, count = connected(loaded, across=self.periodic)
         cells = np.bincount(labels.ravel(), minlength=count + 1).astype(np.float64)
         edges = np.zeros(count + 1)
         around = np.pad(loaded, 1, mode="wrap" if self.periodic else "edge")  # contacts continue where a map ends
@@ -177,7 +177,7 @@ def _of_rectangles(shape: tuple[int, ...], cell: Floats) -> Floats:
     return np.asarray(part(right, above) - part(right, below) - part(left, above) + part(left, below)) / math.pi
 
 
-def _connected(loaded: NDArray[np.bool_], *, across: bool) -> tuple[NDArray[np.int64], int]:
+def connected(loaded: NDArray[np.bool_], *, across: bool) -> tuple[NDArray[np.int64], int]:
     """Return the number from 1 of the patch of each cell, 0 outside, and their count; ``across`` the rim too."""
     from scipy.ndimage import label
     from scipy.sparse import coo_array

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import xarray as xr
 from oracles.exact_contact import ExactContact
-from oracles.jkr_power_law import JkrPowerLaw
+from oracles.jkr import JkrPowerLaw
 from oracles.multiprecision import mp
 from scenes import ensemble
 from studies import asperity_error

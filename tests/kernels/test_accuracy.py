@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 import pytest
-from oracles.jkr_power_law import JkrPowerLaw, PowerShape
+from oracles.jkr import JkrPowerLaw, PowerShape
 from oracles.multiprecision import Number, mp
 from oracles.promises import judge, natural_scales, numbers_at, representable
 

@@ -4,8 +4,8 @@ import math
 
 import numpy as np
 import pytest
-from oracles.dugdale_punch import Punch
-from oracles.jkr_power_law import JkrPowerLaw
+from oracles.dugdale import Punch
+from oracles.jkr import JkrPowerLaw
 from oracles.multiprecision import Number, mp
 from test_accuracy import SHAPES, draw
 

@@ -7,7 +7,7 @@ import math
 
 import numpy as np
 import pytest
-from oracles.jkr_power_law import JkrPowerLaw
+from oracles.jkr import JkrPowerLaw
 from oracles.multiprecision import mp
 
 import roughmdr as rm

@@ -3,9 +3,8 @@
 import numpy as np
 import pytest
 from forms import large
-from oracles.mdr_tables import MdrTableProfile
 from oracles.multiprecision import Number, mp
-from oracles.profiles import Profile, closed_profile
+from oracles.profiles import MdrTableProfile, Profile, closed_profile
 from studies.asperity_error import DRAW
 
 import roughmdr as rm

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from oracles.jkr_power_law import kappa
+from oracles.jkr import kappa
 from oracles.multiprecision import Number, mp
 
 import roughmdr as rm

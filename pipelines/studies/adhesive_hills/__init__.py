@@ -13,10 +13,8 @@ from studies.study import Axes, Figure, Study, table
 
 METHODS = ("summits", "summits in pairs", "hills", "hills in pairs", "hills, Dugdale")
 ELEMENTS = ("elements", "coarse grid", "longer range")
-_COARSE = 2.0 / 3.0
-"""Share of the points of a grid."""
-LONGER = 1.5
-"""The longer range over the range."""
+_COARSE = 2.0 / 3.0  # share of the points of a grid
+LONGER = 1.5  # the longer range over the range
 _LEAST = 0.003  # contact fraction of boundary elements from which on steps are compared
 _COLOURS = dict(zip(METHODS, ("0.6", "#e69f00", "#56b4e9", "#0072b2", "#d55e00"), strict=True))
 _MARKERS = dict(zip(METHODS, "vDosX", strict=True))
@@ -79,14 +77,10 @@ def measure(quick: bool) -> xr.Dataset:
 class Judged(NamedTuple):
     """Differences from boundary elements; NaN where the method has no law."""
 
-    loading: float
-    """r.m.s. of the force over its largest size,"""
-    unloading: float
-    """on the way back,"""
-    area: float
-    """and of the contact area over the largest, both ways."""
-    pull_off: float
-    """The largest tension of unloading over that of boundary elements."""
+    loading: float  # r.m.s. of the force over its largest size
+    unloading: float  # on the way back
+    area: float  # and of the contact area over the largest, both ways
+    pull_off: float  # the largest tension of unloading over that of boundary elements
     loss: float
     """The energy lost over the cycle, over the pull-off force of boundary elements times the stretch of a contact."""
 

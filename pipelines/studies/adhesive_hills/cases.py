@@ -35,14 +35,10 @@ class Case(NamedTuple):
     surface: MapCase
     jump_on: float
     """The radius at which a summit of median curvature jumps on, over the wavelength: the work of adhesion."""
-    preload: float
-    """The contact fraction of independent hills at closest approach."""
-    points: int
-    """Points of the grid, a side of a patch with isotropic waves."""
-    steps: int = 16
-    """From clear to closest approach."""
-    tabor: float = 2.0
-    """Tabor number of a summit of median curvature."""
+    preload: float  # the contact fraction of independent hills at closest approach
+    points: int  # points of the grid, a side of a patch with isotropic waves
+    steps: int = 16  # from clear to closest approach
+    tabor: float = 2.0  # Tabor number of a summit of median curvature
 
 
 class Adhesive:
@@ -111,14 +107,10 @@ FEW = {"calibration": QUICK[:1], "validation": [drawn(61)._replace(steps=QUICK[0
 class Stated(NamedTuple):
     """Errors of hills in pairs on a map, over their largest force, at most 1 as the stated one is."""
 
-    rms: float
-    """Root mean square over the steps whose error counts."""
-    largest: float
-    """Largest of a step."""
-    stated: float
-    """The ``model_error``."""
-    inside: float
-    """Share of the steps with a visible error whose own stated error is no less."""
+    rms: float  # root mean square over the steps whose error counts
+    largest: float  # largest of a step
+    stated: float  # the model_error
+    inside: float  # share of the steps with a visible error whose own stated error is no less
 
 
 def measure_stated(maps: dict[str, list[Case]]) -> xr.Dataset:

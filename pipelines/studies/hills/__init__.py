@@ -43,8 +43,7 @@ _STYLES = dict(
         ("0.45", "#0072b2", "#d55e00", "#009e73", "#66c2a5", "#e5b8d4", "#cc79a7", "#7b3f61"), "vso^PDDD", strict=True
     )), strict=True)
 )  # fmt: skip
-_CURVES = METHODS[:4]
-"""Methods whose errors are drawn over the contact fraction."""
+_CURVES = METHODS[:4]  # methods whose errors are drawn over the contact fraction
 
 
 def press(case: MapCase) -> list[Pressed]:

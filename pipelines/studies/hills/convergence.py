@@ -16,15 +16,12 @@ from studies.study import Figure, named, table
 
 TRIALS = [MapCase(hurst, 16, 12) for hurst in (0.3, 0.5, 0.8)]
 QUICK_TRIALS = [MapCase(0.3, 8, 11), MapCase(0.8, 8, 11)]
-GRIDS = (2, 3, 4, 6, 8, 12)
-"""Points a shortest wave."""
-FINEST = 24
-"""Points a shortest wave of the hills that those of coarser grids are compared with."""
+GRIDS = (2, 3, 4, 6, 8, 12)  # points a shortest wave
+FINEST = 24  # points a shortest wave of the hills that those of coarser grids are compared with
 FINEST_ELEMENTS = 32
 """Points a shortest wave of the elements that the fine ones are compared with; half in the reduced form."""
 SCALES = (5, 10, 20, 40)
-NOISE = (0.01, 0.03, 0.1)
-"""White, r.m.s. over the r.m.s. height."""
+NOISE = (0.01, 0.03, 0.1)  # white, r.m.s. over the r.m.s. height
 ASPERITIES = {"summits in pairs": find_summits, "hills": hills_of}
 _OVER = {
     "trial_force": ((), ("force of fine boundary elements over E*", "m2")),

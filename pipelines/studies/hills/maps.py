@@ -17,10 +17,8 @@ from roughmdr.numerics.arguments import Floats
 from studies.comparison import law_or_nan
 from studies.study import timed
 
-SIDE = 1e-4
-"""Side of the patch [m]."""
-SLOPE = 1e-2
-"""r.m.s., small: nothing depends on it."""
+SIDE = 1e-4  # side of the patch [m]
+SLOPE = 1e-2  # r.m.s., small: nothing depends on it
 _ROLL_OFF = 2.0  # wave number over that of the side, below which the spectrum is level
 
 
@@ -74,11 +72,9 @@ _DIFFERENCE = 1e-4  # change of a separation each way, over itself
 class Pressed(NamedTuple):
     """Force, area and stiffness of a map along a path, over E*, and the run time of the first two."""
 
-    force: Floats
-    """[m2]"""
+    force: Floats  # [m2]
     contact_fraction: Floats
-    stiffness: Floats
-    """-dF/dh [m]"""
+    stiffness: Floats  # -dF/dh [m]
     seconds: float
 
     @property
@@ -158,8 +154,7 @@ def by_persson(surface: HeightMap, separation: Floats, gamma: float) -> Pressed:
     return Pressed(area * found, fraction, stiffness, seconds)
 
 
-POINTS = 8
-"""Points a shortest wave of the map, and of the boundary elements that all is compared with."""
+POINTS = 8  # points a shortest wave of the map, and of the boundary elements that all is compared with
 FRACTIONS = np.geomspace(0.003, 0.2, 9)
 _POINTS = 4  # a shortest wave, of the elements that look for the separations
 _SEARCHED = 12  # separations, between which those of the fractions are found

@@ -21,10 +21,8 @@ from studies.random_scenes.judge import OUTCOMES, judge
 from studies.random_scenes.scenes import scenes, write_inputs
 from studies.study import Figure, Study, blank, in_two_processes, named, table
 
-SEEDS = (2026, 2027)
-"""One for each process."""
-FULL, QUICK = 10_000, 300
-"""Scenes in all."""
+SEEDS = (2026, 2027)  # one for each process
+FULL, QUICK = 10_000, 300  # scenes in all
 QUICK_COHESIVE = ("paraboloid", "flat_punch")  # other shapes take long to compile with adhesion of finite range
 KINDS = ("shape", "adhesion", "source", "estimator")
 _COLOURS = ("#1b6ca8", "#e0a030", "#b8bcc2")

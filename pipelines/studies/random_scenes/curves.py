@@ -10,8 +10,7 @@ from roughmdr.numerics.arguments import Floats
 from roughmdr.scene import Scene
 
 DONE, _EXPECTED = 0, 2
-ROUNDING = 1e-12
-"""Relative rounding of a sum, to which the kernels are tested."""
+ROUNDING = 1e-12  # relative rounding of a sum, to which the kernels are tested
 FORCES = ("force", "pressure")
 
 
@@ -19,16 +18,11 @@ class Curves(NamedTuple):
     """The curves of one cell."""
 
     scene: Scene
-    separation: Floats
-    """[step]"""
-    values: dict[str, Floats]
-    """[row, step]: each realisation that is done, or mean, least and greatest."""
-    error: Floats
-    """[row], over the largest force."""
-    realizations: bool
-    """Whether each row is one realisation."""
-    expected: bool
-    """Whether it is the expected curve, whose error is that of an integral."""
+    separation: Floats  # [step]
+    values: dict[str, Floats]  # [row, step]: each realisation that is done, or mean, least and greatest
+    error: Floats  # [row], over the largest force
+    realizations: bool  # whether each row is one realisation
+    expected: bool  # whether it is the expected curve, whose error is that of an integral
 
     @property
     def attracts_at_a_distance(self) -> bool:

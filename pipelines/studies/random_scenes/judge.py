@@ -38,8 +38,7 @@ class Verdict(NamedTuple):
 
     outcome: str
     reason: str = ""
-    comparisons: int = 0
-    """How many pairs of numbers were compared."""
+    comparisons: int = 0  # how many pairs of numbers were compared
 
 
 def judge(table: dict[str, Any]) -> Verdict:

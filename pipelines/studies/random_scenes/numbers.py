@@ -32,8 +32,7 @@ FAMILIES: dict[str, dict[str, tuple[float, float]]] = {name: {} for name in PLAI
     "invgauss": {"mu": (-1, 0.5)},
 }
 """Families of scipy.stats, with the powers of ten between which their shape parameters lie."""
-HEAVY = ("cauchy", "genextreme", "levy", "pareto", "t")
-"""Families that need not have a variance."""
+HEAVY = ("cauchy", "genextreme", "levy", "pareto", "t")  # families that need not have a variance
 
 
 def seldom(draw: Draw, one_in: int) -> bool:

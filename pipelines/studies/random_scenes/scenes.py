@@ -65,16 +65,11 @@ def write_inputs(folder: Path) -> None:
 class Frame(NamedTuple):
     """The scales that the numbers of a scene lie around, and what restricts them."""
 
-    size: float
-    """[m]"""
-    effective_modulus: float
-    """[Pa]"""
-    datum: float
-    """The mean of the heights [m]."""
-    smooth: bool
-    """Whether the expected curve is, or may be, computed."""
-    expensive: bool
-    """Whether each asperity takes milliseconds to set up: adhesion of finite range on most shapes."""
+    size: float  # [m]
+    effective_modulus: float  # [Pa]
+    datum: float  # the mean of the heights [m]
+    smooth: bool  # whether the expected curve is, or may be, computed
+    expensive: bool  # whether each asperity takes milliseconds to set up: adhesion of finite range on most shapes
 
     @property
     def max_distributed(self) -> int:

@@ -32,8 +32,7 @@ from studies.study import Axes, Figure, Study, blank, named, table
 
 FULL, QUICK = {"elastic": 512, "jkr": 512, "dugdale": 128}, {"elastic": 16, "jkr": 16, "dugdale": 4}
 """Number of cases for each model, from the beginning of one sequence."""
-COUNTED, COUNTED_QUICKLY = 128, 16
-"""Number of cases for each model with adhesion in which equilibria are counted."""
+COUNTED, COUNTED_QUICKLY = 128, 16  # number of cases for each model with adhesion in which equilibria are counted
 EQUILIBRIUM: dict[Literal["jkr", "dugdale"], Any] = {"jkr": jkr_power._distance, "dugdale": equilibrium.state_along}
 """The kernel that evaluates an equilibrium, by adhesion model."""
 WORKERS = 2

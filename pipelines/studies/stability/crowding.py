@@ -42,10 +42,8 @@ class Steps(NamedTuple):
     name: str
     steps: int
     marked: int
-    without: int
-    """Number of steps without an equilibrium."""
-    excess: float
-    """The largest error of the force, against one by a thousand times smaller errors, over the stated one."""
+    without: int  # number of steps without an equilibrium
+    excess: float  # the largest error of the force, against one by a thousand times smaller errors, over the stated one
 
 
 def crowds(quick: bool) -> Iterator[Crowd]:

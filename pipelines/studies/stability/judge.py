@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 
 import xarray as xr
 from oracles.dugdale_power_law import DugdalePowerLaw
-from oracles.jkr_power_law import JkrPowerLaw
+from oracles.jkr import JkrPowerLaw
 from oracles.multiprecision import Number, mp
 from oracles.promises import Judged, Results, judge, judge_dugdale, natural_scales, numbers_at, representable
 

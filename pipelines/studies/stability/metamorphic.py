@@ -37,8 +37,7 @@ VARIABLES = ["force", "contact_area", "contact_count", "stiffness", "energy", "d
 POWERS = {"force": (0, 1), "contact_area": (2, 0), "contact_count": (0, 0), "stiffness": (-1, 1),
           "energy": (1, 1), "dissipated_energy": (1, 1)}  # fmt: skip
 """Powers of the units of length and force in each variable."""
-UNITS = ((20, -13), (-7, 9), (3, 1))
-"""Powers of two in which lengths and forces are counted."""
+UNITS = ((20, -13), (-7, 9), (3, 1))  # powers of two in which lengths and forces are counted
 _WORKS = 4.0 ** -np.arange(40.0)
 _SMALL, _LARGE = 1e-9, 1e-3  # relative: between them a difference has a single power of w
 

@@ -24,10 +24,8 @@ from studies.stated_error.scenes import ADHESIONS, ESTIMATORS, RandomScene, scen
 from studies.study import Figure, Study, in_two_processes, named, table, without_limits
 
 SCENES, QUICK = 200, 60
-FINER = 10.0
-"""How many times more accurate than the stated error a reference is at least."""
-HONEST = 0.99
-"""The share of scenes whose true error is to be below the stated one."""
+FINER = 10.0  # how many times more accurate than the stated error a reference is at least
+HONEST = 0.99  # the share of scenes whose true error is to be below the stated one
 _MIN_ERROR = 1e-17  # where errors of 0 are drawn
 
 
@@ -36,8 +34,7 @@ class Judged(NamedTuple):
 
     true: float
     stated: float
-    refused: str = ""
-    """Why the scene was not computed; then there is no number that could be wrong."""
+    refused: str = ""  # why the scene was not computed; then there is no number that could be wrong
 
     @property
     def honest(self) -> bool:

@@ -10,9 +10,8 @@ from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
-from oracles.dugdale import Array, Cohesion, Integrals, State
+from oracles.dugdale import Array, Cohesion, Integrals, Punch, State
 from oracles.dugdale_curve import Curve, Place, each_of
-from oracles.dugdale_punch import Punch
 from oracles.jkr import Asperity
 from oracles.multiprecision import Number, mp
 from oracles.profiles import closed_profile
@@ -47,12 +46,9 @@ def branch_numbers(indentations: Iterable[Number], ends: list[tuple[Number, Numb
 class ContactPath(NamedTuple):
     """One asperity on a half-space, loaded and unloaded."""
 
-    ends: list[tuple[Number, Number]]
-    """Indentations [m] between which each stable branch lies."""
-    force: Callable[[int, Number], Number]
-    """Return the force [N] on a branch at an indentation [m]."""
-    touch: Number = 0
-    """The indentation [m] at which a contact begins."""
+    ends: list[tuple[Number, Number]]  # indentations [m] between which each stable branch lies
+    force: Callable[[int, Number], Number]  # return the force [N] on a branch at an indentation [m]
+    touch: Number = 0  # the indentation [m] at which a contact begins
 
     def forces(self, indentations: list[Number]) -> list[Number]:
         """Return the force [N] at each indentation [m] of a path."""

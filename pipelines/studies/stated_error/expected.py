@@ -26,8 +26,7 @@ from roughmdr.scene import Scene
 from roughmdr.shapes import SHAPES
 from studies.stated_error.contacts import branch_numbers
 
-ORDERS = (16, 24, 36, 54)
-"""Nodes on each panel over shape parameters, from coarse to fine."""
+ORDERS = (16, 24, 36, 54)  # nodes on each panel over shape parameters, from coarse to fine
 _SCORE_END, _SCORE_PANEL = 8.5, 1.7  # normal scores: where parameters end, and the widest panel
 _MAX_POPULATIONS = 2
 _SCAN = 100  # scores between which kinks are searched

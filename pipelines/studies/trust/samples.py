@@ -18,8 +18,7 @@ from roughmdr.spectrum import SelfAffine
 from studies.comparison import in_cases, law_of, percent
 from studies.study import table
 
-FRACTIONS = (0.005, 0.02, 0.1)
-"""Mean contact fractions."""
+FRACTIONS = (0.005, 0.02, 0.1)  # mean contact fractions
 _ASKED = ("force", "contact_area", "sampling_error", "area_sampling_error", "effective_contacts")
 _POINTS = 256  # points along the side of a map
 _NAMES = {

@@ -19,12 +19,9 @@ class Surface(NamedTuple):
     """A Gaussian self-affine map."""
 
     spectrum: SelfAffine
-    size: float
-    """Side [m]."""
-    points: int
-    """A side of the grid that the file holds."""
-    refined: int = 1
-    """How many points there are for each of these along a side of the grid of boundary elements."""
+    size: float  # side [m]
+    points: int  # a side of the grid that the file holds
+    refined: int = 1  # how many points there are for each of these along a side of the grid of boundary elements
 
     def height(self, seed: int = 1) -> Floats:
         """Return heights [m] on the grid of the file."""
@@ -35,15 +32,11 @@ class Case(NamedTuple):
     """A scene, and the oracle that knows its force."""
 
     name: str
-    scene: Table
-    """Table that TOML holds; a map is named map.nc."""
-    oracle: str
-    """pairs, boundary elements (of asperities), map, maps (the mean over several), or none: it is refused."""
-    changes: str = ""
-    """In which way it differs from the shipped scene of its name."""
+    scene: Table  # table that TOML holds; a map is named map.nc
+    oracle: str  # pairs, boundary elements (of asperities), map, maps (the mean over several), or none: it is refused
+    changes: str = ""  # in which way it differs from the shipped scene of its name
     surface: Surface | None = None
-    points: int = 512
-    """Points a side of the grid of boundary elements of asperities."""
+    points: int = 512  # points a side of the grid of boundary elements of asperities
 
 
 def _shipped(name: str, without: tuple[str, ...] = (), **changes: Any) -> Table:

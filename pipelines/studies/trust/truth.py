@@ -20,8 +20,7 @@ from studies.versus_bem.ensembles import distances, height_map, side
 
 _LIFTED = 0.3  # largest lift of the surface between contacts by their pressure, over the deepest overlap
 _LOADING, _UNLOADING = 60, 200  # steps of a path that pairs are taken along
-MAPS = 5
-"""Gaussian maps whose mean force is compared with the expected law."""
+MAPS = 5  # Gaussian maps whose mean force is compared with the expected law
 
 
 class Path(NamedTuple):

@@ -30,8 +30,7 @@ CASES = (
     Case(9, 5.0, 2.0, 384, 2),
 )
 QUICK = (Case(1, 8.0, 2.0, 144, step=0.08), Case(4, 5.0, 2.0, 192, step=0.08))
-SOURCES = (*MODELS, "bem", "coarse")
-"""They give force, area and count: the models, and boundary elements on both grids."""
+SOURCES = (*MODELS, "bem", "coarse")  # they give force, area and count: the models, and boundary elements on both grids
 _QUANTITIES = {
     "force": ("force over E* a0^3/R", "1"),
     "area": ("contact area over a0^2; of boundary elements the mean of those closed and within the range", "1"),
@@ -98,16 +97,12 @@ class Judged(NamedTuple):
     loading: float
     """The largest of the force over the largest tension, at steps where as many are in contact, and not none."""
     unloading: float
-    area: float
-    """The largest of the contact area over the largest area, at such steps."""
-    pull_off: float
-    """Relative error of the largest tension on unloading."""
+    area: float  # the largest of the contact area over the largest area, at such steps
+    pull_off: float  # relative error of the largest tension on unloading
     on: float
     """Mean lag of the jumps on over the stretch at which one alone lets go; > 0 where it jumps on at a smaller gap."""
-    off: float
-    """The lag at letting go; > 0 where it lets go at a smaller gap."""
-    apart: float
-    """Share of the steps in contact where not as many are in contact."""
+    off: float  # the lag at letting go; > 0 where it lets go at a smaller gap
+    apart: float  # share of the steps in contact where not as many are in contact
 
 
 def turning(separation: Floats) -> int:

@@ -29,18 +29,13 @@ class Case(NamedTuple):
     """An ensemble, its adhesion and its grid."""
 
     asperities: int
-    spacing: float
-    """The side of the area for each [a0]."""
+    spacing: float  # the side of the area for each [a0]
     tabor: float
-    points: int
-    """A side of the grid of boundary elements."""
+    points: int  # a side of the grid of boundary elements
     seed: int = 1
-    step: float = 0.05
-    """Between separations."""
-    below: float = 0.15
-    """Distance by which it is pressed beyond the last jump-on."""
-    spread: float = 0.15
-    """Standard deviation of the heights."""
+    step: float = 0.05  # between separations
+    below: float = 0.15  # distance by which it is pressed beyond the last jump-on
+    spread: float = 0.15  # standard deviation of the heights
 
     @property
     def size(self) -> float:
@@ -85,8 +80,7 @@ STATED: dict[str, Any] = {
     "pairs, JKR": {"adhesion": "jkr", "interaction": PAIRS[2]},
 }  # fmt: skip
 """Models whose stated errors are held against boundary elements (``pipelines/study.py at_pressure``)."""
-FLATTER = 1e3
-"""Radii over those of the case: slopes are small, and nothing else changes."""
+FLATTER = 1e3  # radii over those of the case: slopes are small, and nothing else changes
 PRESSED = (
     Case(4, 7.0, 1.0, 180, 21, below=1.2), Case(1, 12.0, 1.2, 180, below=2.0),
     Case(4, 8.0, 2.0, 402, 22, below=1.2), Case(9, 7.0, 1.5, 396, 23, below=1.0),

@@ -33,9 +33,6 @@ from studies.versus_bem.ensembles import (
 
 FRACTIONS = np.array([0.001, 0.003, 0.01, 0.03, 0.05, 0.1, 0.2, 0.3])
 _FINE_FRACTION = 0.1  # the largest contact fraction on the finest grids
-MODELS = dict(zip(("force", "force_mean", "force_first", "force_second"), INTERACTIONS.values(), strict=True))
-"""Interactions, by the names of their forces."""
-_LABELS = dict(zip(MODELS, INTERACTIONS, strict=True))
 GROUPS = ("few contacts", "random", "separated", "square", "nayak", "map", "crowd")
 FEW_CONTACTS = 4.0
 """Up to so many, contacts of the patch and of its periodic images are a lattice, wherever they are placed."""
@@ -44,27 +41,21 @@ _NEGLIGIBLE = 1e-4  # least error that is told apart from none
 _FINE_SEED = 11  # and above, of the cases on the finest grids
 _BINS = ((0.0, 0.004), (0.004, 0.03), (0.03, 0.15), (0.15, 1.0))
 _FINER_BINS = tuple(itertools.pairwise((0.0, 0.004, 0.03, 0.06, 0.15, 1.0)))
-_NAMES = {
-    "contact_fraction": ("summed contact area of independent asperities over the nominal area", "1"),
-    "contact_count": ("contacts of independent asperities", "1"),
-    "force": ("force of independent asperities", "N"),
+_LAW = {
+    "force": ("force, by each model", "N"),
+    "contact_fraction": ("summed contact area over the nominal area, by each model", "1"),
+    "contact_count": ("contacts, by each model", "1"),
+    "model_error_curve": ("model error that each model states", "1"),
+}
+_ELEMENTS = {
     "force_bem": ("force of boundary elements, infinite in full contact", "N"),
     "contact_fraction_bem": ("contact fraction of boundary elements", "1"),
-    "force_coarse": ("force of boundary elements with half as many points a side", "N"),
-    "force_mean": ("force of asperities displaced by the mean pressure", "N"),
-    "force_first": ("force of coupled asperities, to first order", "N"),
-    "force_second": ("force of coupled asperities, to second order", "N"),
-    "contact_fraction_second": ("contact fraction to second order", "1"),
-    "contact_count_second": ("contacts to second order", "1"),
     "contact_count_bem": ("contacts of boundary elements", "1"),
-    "stated": ("stated model error to second order", "1"),
-    "stated_first": ("stated model error to first order", "1"),
-    "stated_alone": ("stated model error of independent asperities with positions", "1"),
-    "seconds_second": ("run time of a load to second order", "s"),
     "seconds_bem": ("run time of a load by boundary elements", "s"),
+    "force_coarse": ("force of boundary elements with half as many points a side", "N"),
+    "seconds_second": ("run time of a load to second order", "s"),
     "radius_points": ("root mean square of the contact radii over the spacing of the grid", "1"),
 }
-_LAW = ("force", "contact_fraction", "contact_count", "model_error_curve")
 
 
 def press(surface: HeightMap, separation: float, separated_paraboloids: bool) -> tuple[float, float, float, float]:
@@ -83,14 +74,13 @@ def press(surface: HeightMap, separation: float, separated_paraboloids: bool) ->
     return force, area(surface.pressure), np.unique(label_contacts(surface.pressure)).size - 1, seconds
 
 
-def law_by(ensemble: xr.Dataset, separation: Floats, interaction: Any) -> dict[str, Floats]:
-    """Return the law at separations [m], in falling order; NaN from where it has more contact than the patch."""
+def law_by(ensemble: xr.Dataset, separation: Floats, interaction: Any) -> list[Floats]:
+    """Return ``_LAW`` at separations [m], in falling order; NaN from where it has more contact than the patch."""
     for steps in range(separation.size, 0, -1):
         found = law_or_nan(ensemble, separation[:steps], *_LAW, effective_modulus=MODULUS, interaction=interaction)
         if np.isfinite(found[0]).any():
             break
-    return {name: np.pad(each, (0, separation.size - each.size), constant_values=np.nan)
-            for name, each in zip(_LAW, found, strict=True)}  # fmt: skip
+    return [np.pad(each, (0, separation.size - each.size), constant_values=np.nan) for each in found]
 
 
 def touch(radius: Floats, distance: Floats) -> bool:
@@ -99,47 +89,37 @@ def touch(radius: Floats, distance: Floats) -> bool:
     return bool(np.any(distance < np.where((radius[:, None] > 0.0) & (radius[None, :] > 0.0), reach, 0.0)))
 
 
-def compare(case: Case | MapCase) -> dict[str, Floats]:
-    """Return the numbers named in ``_NAMES`` at each contact fraction that the ensemble reaches."""
+def compare(case: Case | MapCase) -> dict[str, Any]:
+    """Return ``_LAW`` by each model, and ``_ELEMENTS``, at each contact fraction that the ensemble reaches."""
     with without_limits():
         ensemble, *maps = case.build()
     along = separations(ensemble, FRACTIONS[FRACTIONS <= _FINE_FRACTION] if case.points >= FINE else FRACTIONS)
     along = along[np.isfinite(along)]
-    laws = {name: law_by(ensemble, along, interaction) for name, interaction in MODELS.items()}
-    seconds = timed(partial(law_by, ensemble, along, MODELS["force_second"]))[1] / along.size  # all is compiled by now
+    laws = [law_by(ensemble, along, interaction) for interaction in INTERACTIONS.values()]
+    seconds = timed(partial(law_by, ensemble, along, INTERACTIONS["order 2"]))[1] / along.size  # all is compiled by now
     fine, coarse = (HeightMap(height, SIZE, MODULUS) for height in maps)
     radii, distance = [contact_radii(ensemble, h) for h in along.tolist()], distances(ensemble)
     apart = [isinstance(case, Case) and "radius" in ensemble and not touch(each, distance) for each in radii]
     found = np.array([press(fine, *each) for each in zip(along.tolist(), apart, strict=True)]).T
     rough = [press(coarse, *each)[0] for each in zip(along.tolist(), apart, strict=True)]
-    alone, second = laws["force"], laws["force_second"]
-    return {
-        **{name: law["force"] for name, law in laws.items()},
-        **dict(zip(("force_bem", "contact_fraction_bem", "contact_count_bem", "seconds_bem"), found, strict=True)),
-        "contact_fraction": alone["contact_fraction"],
-        "contact_count": alone["contact_count"],
-        "force_coarse": np.array(rough),
-        "contact_fraction_second": second["contact_fraction"],
-        "contact_count_second": second["contact_count"],
-        "stated": second["model_error_curve"],
-        "stated_first": laws["force_first"]["model_error_curve"],
-        "stated_alone": alone["model_error_curve"],
-        "seconds_second": np.full(along.size, seconds),
-        "radius_points": np.array([np.sqrt(np.mean(a[a > 0.0] ** 2)) for a in radii]) * case.points / SIZE,
-    }
+    points = np.array([np.sqrt(np.mean(a[a > 0.0] ** 2)) for a in radii]) * case.points / SIZE
+    numbers = zip(_ELEMENTS, (*found, rough, np.full(along.size, seconds), points), strict=True)
+    return {**dict(zip(_LAW, zip(*laws, strict=True), strict=True)), **dict(numbers)}
 
 
 def measure(quick: bool) -> xr.Dataset:
     """Compare all cases, or a few of them on coarse grids."""
     cases = QUICK if quick else CASES
-    numbers = in_cases(_NAMES, in_two_processes(compare, cases), "case", "step")
+    found = in_two_processes(compare, cases)
     placement, shape, roughness = zip(*(case.labels for case in cases), strict=True)
+    words = named("heights over the drop at a spacing; of maps, of the waves")
     return xr.Dataset(
-        numbers,
+        in_cases(_LAW, found, "case", "model", "step") | in_cases(_ELEMENTS, found, "case", "step"),
         {
+            "model": list(INTERACTIONS),
             "placement": ("case", list(placement)),
             "shape": ("case", list(shape)),
-            "roughness": ("case", list(roughness), named("heights over the drop at a spacing; of maps, of the waves")),
+            "roughness": ("case", list(roughness), words),
             "seed": ("case", [case.seed for case in cases]),
         },
     )
@@ -151,19 +131,23 @@ def estimates(contact_fraction: Floats, group: NDArray[np.str_]) -> Floats:
     return np.where(group == "map", of_summits, of_asperities)
 
 
-def errors(result: xr.Dataset, name: str = "force", full_contact: bool = True) -> Floats:
+def errors(result: xr.Dataset, model: str = "independent", full_contact: bool = True) -> Floats:
     """Return by what share a force is too low [case, step], 1 in full contact or, not ``full_contact``, NaN there.
 
     NaN where the grid does not resolve the contacts, or where boundary elements have not converged.
     """
-    true = result["force_bem"]
-    known = (result["radius_points"] >= _MIN_POINTS) & (true.notnull() if full_contact else np.isfinite(true))
-    return np.asarray((1.0 - result[name] / true).where(known))
+    return _too_low(result, result["force"].sel(model=model), full_contact)
 
 
 def grid_errors(result: xr.Dataset) -> Floats:
     """Return how far forces on half as many points are off; NaN where the error is not known, or in full contact."""
-    return np.abs(errors(result, "force_coarse"))
+    return np.abs(_too_low(result, result["force_coarse"]))
+
+
+def _too_low(result: xr.Dataset, force: xr.DataArray, full_contact: bool = True) -> Floats:
+    true = result["force_bem"]
+    known = (result["radius_points"] >= _MIN_POINTS) & (true.notnull() if full_contact else np.isfinite(true))
+    return np.asarray((1.0 - force / true).where(known))
 
 
 def without_grid(fine: Any, coarse: Any) -> Any:
@@ -175,25 +159,25 @@ def groups(result: xr.Dataset) -> NDArray[np.str_]:
     """Return the group of each case and step."""
     separated = dict.fromkeys(("hexagonal", "hard_core 0.5", "hard_core 0.7"), "separated")
     placed = [separated.get(name, name.split()[0]) for name in result["placement"].to_numpy().tolist()]
-    whole = np.broadcast_to(np.array(placed)[:, None], result["force"].shape)
-    few = (result["contact_count"].to_numpy() <= FEW_CONTACTS) & (whole != "map") & (whole != "crowd")
-    return np.where(few, "few contacts", whole)
+    whole = np.broadcast_to(np.array(placed)[:, None], result["force_bem"].shape)
+    few = result["contact_count"].sel(model="independent").to_numpy() <= FEW_CONTACTS
+    return np.where(few & (whole != "map") & (whole != "crowd"), "few contacts", whole)
 
 
 def draw(result: xr.Dataset) -> Figure:
     """Draw the error of independent asperities over the contact fraction with its estimate, and by interaction."""
     figure, (left, right) = panels(12, 5.2, 2)
-    fraction, group = result["contact_fraction"].to_numpy(), groups(result)
+    fraction, group = result["contact_fraction"].sel(model="independent").to_numpy(), groups(result)
     along = np.geomspace(5e-4, 1.0, 200)
     for name, kind, style in (("estimate", ASPERITIES, "k-"), ("estimate for maps", SUMMITS, "k--")):
         left.loglog(along, interaction_error(along, kind), style, lw=1.2, label=name)
     for name in GROUPS:
         left.plot(fraction[group == name], np.abs(errors(result)[group == name]), "o", ms=4, label=name)
     left.set(ylim=(0.005, 1.3), ylabel="force too low, of crowds too high, by (relative)", title="Independent")
-    for number, (name, label) in enumerate(_LABELS.items()):
+    for number, model in enumerate(INTERACTIONS):
         for own, mark in ((group != "map", "o"), (group == "map", "x")):
-            error = np.abs(errors(result, name, False)[own])
-            right.loglog(fraction[own], error, f"C{number}{mark}", ms=4, label=label if mark == "o" else None)
+            error = np.abs(errors(result, model, False)[own])
+            right.loglog(fraction[own], error, f"C{number}{mark}", ms=4, label=model if mark == "o" else None)
     right.set(ylim=(1e-6, 1.3), ylabel="error of the force (relative)", title="By interaction (crosses: maps)")
     for panel in (left, right):
         panel.set(xlim=(5e-4, 1.0), xlabel="summed contact area over nominal area")
@@ -203,34 +187,36 @@ def draw(result: xr.Dataset) -> Figure:
 
 def report(result: xr.Dataset) -> str:
     """Return errors over sqrt(f), by interaction and on the finest grids, and how the stated ones do."""
-    fraction, error, group = result["contact_fraction"].to_numpy(), errors(result), groups(result)
+    fraction = result["contact_fraction"].sel(model="independent").to_numpy()
+    error, group = errors(result), groups(result)
     coefficients, estimated, by_model, stated = [], [], [], []
+
+    def told_by(model: str) -> Floats:
+        return result["model_error_curve"].sel(model=model).to_numpy()
+
     for name in GROUPS:
         own = np.isfinite(error) & (group == name)
         parts = [own & (fraction > low) & (fraction <= high) for low, high in _BINS]
         coefficients.append([name, *(_quantiles(error[part] / np.sqrt(fraction[part])) for part in parts)])
         if own.any():
-            told = result["stated_alone"].to_numpy() if name == "crowd" else estimates(fraction, group)
+            told = told_by("independent") if name == "crowd" else estimates(fraction, group)
             estimated.append([name, *held(np.abs(error[own]), told[own]).cells])
     for name, (low, high) in itertools.product(GROUPS, _FINER_BINS):
         own = (group == name) & (fraction > low) & (fraction <= high)
         if own.any():
-            found = [median_and_largest(errors(result, model, False)[own]) for model in MODELS]
+            found = [median_and_largest(errors(result, model, False)[own]) for model in INTERACTIONS]
             by_model.append([name, f"{low:g} to {high:g}", *found])
     grid = grid_errors(result)
     unknown = np.fmax(grid, _NEGLIGIBLE)
-    for (order, force, stated_name), name in itertools.product(
-        (("1", "force_first", "stated_first"), ("2", "force_second", "stated")), GROUPS
-    ):
-        off, said = np.abs(errors(result, force, False)), result[stated_name].to_numpy()
+    for order, name in itertools.product(("order 1", "order 2"), GROUPS):
+        off, said = np.abs(errors(result, order, False)), told_by(order)
         own = np.isfinite(off) & np.isfinite(said) & (group == name)
         if own.any():
-            stated.append([order, name, *held(off[own], said[own], unknown[own]).cells])
+            stated.append([order[-1], name, *held(off[own], said[own], unknown[own]).cells])
     fine = result.isel(case=np.flatnonzero(result["seed"].to_numpy() >= _FINE_SEED))
     finest = [_fine(fine.isel(step=i)) for i in range(fine.sizes["step"]) if fine["force_bem"][:, i].notnull().any()]
     seconds = " and ".join(f"{1e3 * float(result[name].median()):.3g} ms" for name in ("seconds_second", "seconds_bem"))
     grid = grid[np.isfinite(grid)]
-    labels = [*_LABELS.values()]
     return f"""e over sqrt(f), median (5 to 95 %), f the summed contact fraction of independent asperities:
 
 {table(["placement", *(f"f from {low:g} to {high:g}" for low, high in _BINS)], coefficients)}
@@ -242,11 +228,11 @@ Forces of boundary elements on half as many points differ by {100.0 * float(np.m
 
 Errors of the force by interaction, median of the magnitude (largest):
 
-{table(["placement", "f", *labels], by_model)}
+{table(["placement", "f", *INTERACTIONS], by_model)}
 
 Separated paraboloids of lognormal radii on the finest grid, largest errors of all seeds:
 
-{table(["f", *labels, "of the grid", "area", "contacts"], finest)}
+{table(["f", *INTERACTIONS, "of the grid", "area", "contacts"], finest)}
 
 The error that each order states (not told apart: {_NEGLIGIBLE:g} and less, and errors of the grid):
 
@@ -263,11 +249,12 @@ def _quantiles(ratio: Floats) -> str:
 def _fine(step: xr.Dataset) -> list[str]:
     """Return a row of the largest errors at a step; force held against the limit of both grids."""
     exact = without_grid(step["force_bem"], step["force_coarse"])
-    off = [abs(step[name] / exact - 1.0) for name in (*MODELS, "force_bem")]
-    area = abs(step["contact_fraction_second"] / step["contact_fraction_bem"] - 1.0)
-    missed = abs(step["contact_count_second"] - step["contact_count_bem"])
+    off = [abs(force / exact - 1.0) for force in (*step["force"].transpose("model", ...), step["force_bem"])]
+    second = step.sel(model="order 2")
+    area = abs(second["contact_fraction"] / step["contact_fraction_bem"] - 1.0)
+    missed = abs(second["contact_count"] - step["contact_count_bem"])
     cells = (f"{100.0 * float(error.max()):.2g} %" for error in (*off, area))
-    return [f"{float(step['contact_fraction_second'].median()):.2g}", *cells, f"{float(missed.max()):.0f} off"]
+    return [f"{float(second['contact_fraction'].median()):.2g}", *cells, f"{float(missed.max()):.0f} off"]
 
 
 STUDY = Study(

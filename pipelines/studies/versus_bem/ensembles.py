@@ -30,14 +30,12 @@ class Case(NamedTuple):
     placement: str
     """random, hexagonal, square, or hard_core with the smallest distance over the mean spacing: "hard_core 0.7"; or at
     random on a part of the side of the patch: "crowd 0.6"."""
-    shape: str
-    """paraboloid, lognormal (paraboloids whose radii vary by 30 %), cone, quartic (r^4), or nayak."""
+    shape: str  # paraboloid, lognormal (paraboloids whose radii vary by 30 %), cone, quartic (r^4), or nayak
     asperities: int
     roughness: float
     """Standard deviation of the heights over how far the flank of an asperity falls over the mean spacing; of nayak the
     longest wave over the side."""
-    points: int
-    """A side of the grid of boundary elements."""
+    points: int  # a side of the grid of boundary elements
     seed: int
 
     @property
@@ -161,8 +159,7 @@ class MapCase(NamedTuple):
     hurst: float
     long_wave: float
     short_wave: float
-    points: int
-    """A side of the grid."""
+    points: int  # a side of the grid
     seed: int
 
     @property
@@ -193,8 +190,7 @@ def write_map(height: Floats, size: float, file: Path) -> None:
 
 
 PLACEMENTS = ("random", "hard_core 0.5", "hard_core 0.7", "hexagonal", "square")
-FINE = 1024
-"""Grid of the cases that are to show more digits than the others."""
+FINE = 1024  # grid of the cases that are to show more digits than the others
 CASES: list[Case | MapCase] = [
     *(Case(where, "paraboloid", 64, rough, 256, seed)
       for seed, rough, where in product((1, 2), (0.02, 0.2, 1.0), PLACEMENTS)),

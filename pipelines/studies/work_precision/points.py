@@ -11,21 +11,16 @@ from studies.study import timed
 
 _LONG = 0.5  # [s], after which a curve is not timed again
 QUANTITIES = ("force", "contact area", "pull-off force")
-Errors = tuple[float, float, float]
-"""Relative error of each of the ``QUANTITIES``."""
+Errors = tuple[float, float, float]  # relative error of each of the QUANTITIES
 
 
 class Curve(NamedTuple):
     """Result of a method."""
 
-    force: Floats
-    """[N], along the path."""
-    area: Floats
-    """[m2], along the path."""
-    evaluations: int
-    """How often a state of a contact, an integrand, a profile or a spring was evaluated."""
-    pull_off: float | None = None
-    """The greatest tension, with its sign [N]; None for that of the path."""
+    force: Floats  # [N], along the path
+    area: Floats  # [m2], along the path
+    evaluations: int  # how often a state of a contact, an integrand, a profile or a spring was evaluated
+    pull_off: float | None = None  # the greatest tension, with its sign [N]; None for that of the path
 
 
 class Reference(NamedTuple):
@@ -35,8 +30,7 @@ class Reference(NamedTuple):
     force: Floats
     area_steps: list[int]
     area: Floats
-    pull_off: float
-    """0 where there is none."""
+    pull_off: float  # 0 where there is none
 
     def errors(self, curve: Curve) -> Errors:
         """Return the r.m.s. error over the steps, over the largest value of the reference."""
@@ -57,19 +51,16 @@ class Point(NamedTuple):
     evaluations: float
 
 
-Points = Callable[[Any, Reference, bool], Iterator[Point]]
-"""(scene, reference, quick) -> a point for each setting."""
+Points = Callable[[Any, Reference, bool], Iterator[Point]]  # (scene, reference, quick) -> a point for each setting
 
 
 class Method(NamedTuple):
     """A method: one entry in a list."""
 
     name: str
-    setting: str
-    """Name of the number that sets its error."""
+    setting: str  # name of the number that sets its error
     points: Points
-    competes: bool = True
-    """For the cheapest: not a method that chooses among others, or that is a part of one."""
+    competes: bool = True  # for the cheapest: not a method that chooses among others, or that is a part of one
 
 
 def each_setting(settings: tuple[float, ...], prepare: Callable[[Any, float], Callable[[], Curve]]) -> Points:

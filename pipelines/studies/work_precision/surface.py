@@ -101,8 +101,7 @@ def expected_by_nodes(rough: Rough, exact: Reference, quick: bool) -> Iterator[P
         yield from each_setting((1, 2, 3, 4, 6, 8, 12, 16), _by_nodes)(rough, exact, quick)
 
 
-Draw = Callable[[Rough, int], Curve]
-"""(surface, number) -> one realisation."""
+Draw = Callable[[Rough, int], Curve]  # (surface, number) -> one realisation
 
 
 def _drawn(draw: Draw, count: int, quick_count: int) -> Points:
