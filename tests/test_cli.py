@@ -170,7 +170,7 @@ def test_the_scaling_study_in_its_quick_form(tmp_path: Path) -> None:
     with xr.open_dataset(tmp_path / "scaling.nc") as result:
         assert result.cost.sizes == {"contact": 2, "method": 3}
         assert (result.cost > 0.0).all()
-        assert result.state_time_brentq.sizes == {"shape": 8}
+        assert result.law_brentq.dropna("law_shape").sizes == {"law_shape": 8}
         assert result.law_time.sizes == {"law_shape": 11, "law": 3}
         assert (result.law_time > 0.0).all()
         assert result.cell_runs == result.attrs["cells"]

@@ -12,7 +12,6 @@ import numpy as np
 import xarray as xr
 from oracles.plain_sums import Sums, with_brentq, with_numpy
 from scipy.optimize import brentq
-from studies.comparison import in_cases
 from studies.study import Figure, Study, blank, named, timed
 
 import roughmdr as rm
@@ -50,25 +49,13 @@ SHAPES: dict[str, dict[str, Any]] = {
     "rounded_punch": {"flat_radius": "2 um", "edge_radius": RADIUS},
     "tabulated": {"r": _R.tolist(), "f": (1e-4 * _R + _R**2 / 1e-4).tolist()},
 }
-OTHERS = tuple(SHAPES)[3:]  # shapes whose steps are split from their set-up, and held against a root finder
-LAWS = ("none", "jkr", "dugdale")
+LAWS = {"none": "no adhesion", "jkr": "JKR", "dugdale": "Dugdale, Tabor number 1"}
 _SLOW = {("tabulated", "dugdale"): 0.001}
 """Share of the asperities that is measured; of all others with a range of adhesion a twentieth."""
 ASPERITIES = {False: 1_000_000, True: 20_000}
 TABOR = (0.1, 1.0, 10.0, 100.0)
+_CLOSED = ("paraboloid", "cone", "flat_punch")  # shapes without a profile that a root finder is given
 _BRENTQ = 300, 200  # asperities, or contacts of one, that a root finder is given
-_SHAPE_COSTS = {
-    "state_time": ("time per asperity and step", "ns"),
-    "asperity_time": ("time per asperity, once", "ns"),
-    "path_time": ("time per asperity and step over 200 steps each way, all included", "ns"),
-    "state_time_brentq": ("time per asperity and step", "ns"),
-    "profile_time": ("time to set up the profiles", "s"),
-}
-_BARS = {
-    "state_time": "one more step",
-    "path_time": "200 steps each way, set-up included",
-    "state_time_brentq": "scipy brentq",
-}
 
 
 def section(count: int, shape: str = "paraboloid", **parameters: Any) -> dict[str, Any]:
@@ -189,31 +176,23 @@ def by_range(count: int, repeats: int) -> xr.Dataset:
     return xr.Dataset(variables, {"tabor": ("tabor", list(TABOR), named("Tabor number"))}, {"dugdale_count": count})
 
 
-def by_shape(count: int, repeats: int) -> xr.Dataset:
-    """Measure every other shape with JKR, and a root finder on it."""
-    rows = []
-    for shape in OTHERS:
-        ensemble = ensemble_of(count, shape, **SHAPES[shape])
-        _, profile = timed(partial(getattr, ensemble, "columns"))  # for a table: its pieces
-        state, before, short = split_cost(ensemble, Adhesion(WORK), repeats)
-        rows.append((state, before, each(short), each(by_brentq(ensemble)), profile))
-    return xr.Dataset(in_cases(_SHAPE_COSTS, rows, "shape"), {"shape": list(OTHERS)})
-
-
 def by_law(count: int, repeats: int) -> xr.Dataset:
-    """Measure every shape with every law, and the JKR paraboloid in the same run; Tabor number 1 of 50 um."""
+    """Measure every shape with every law, the JKR paraboloid in the same run, and a root finder; Tabor number 1."""
     laws = {"none": Adhesion(), "jkr": Adhesion(WORK), "dugdale": of_range(1.0)}
-    found = np.full((len(SHAPES), len(LAWS)), np.nan)
+    found, by_root = np.full((len(SHAPES), len(LAWS)), np.nan), np.full(len(SHAPES), np.nan)
     reference = each(by_the_sum(ensemble_of(count), laws["jkr"], repeats, TOTALS, 200))
     for i, (shape, parameters) in enumerate(SHAPES.items()):
         for j, law in enumerate(LAWS):
             share = _SLOW.get((shape, law), 0.05 if law == "dugdale" and shape != "paraboloid" else 1.0)
             ensemble = ensemble_of(max(20, int(share * count)), shape, **parameters)
             found[i, j] = each(by_the_sum(ensemble, laws[law], repeats, TOTALS, 200))
+        if shape not in _CLOSED:
+            by_root[i] = each(by_brentq(ensemble))
     over = ("law_shape", "law")
     variables = {
         "law_time": (over, found, named("time per contact and step", "ns")),
         "law_ratio": (over, found / reference, named("time over that of the JKR paraboloid")),
+        "law_brentq": ("law_shape", by_root, named("time of scipy's brentq for a contact, JKR", "ns")),
     }
     return xr.Dataset(variables, {"law_shape": list(SHAPES), "law": list(LAWS)})
 
@@ -221,7 +200,7 @@ def by_law(count: int, repeats: int) -> xr.Dataset:
 def measure(quick: bool) -> xr.Dataset:
     """Return all figures; ``quick`` of small ensembles."""
     count, repeats = ASPERITIES[quick], 1 if quick else 3
-    parts = [by_method(count, repeats), by_shape(count // 50, repeats), by_range(count // 10, repeats)]
+    parts = [by_method(count, repeats), by_range(count // 10, repeats)]
     parts.append(by_law(count // 50 if quick else count // 10, repeats))
     parts += [by_cell(200 if quick else 10_000, repeats), by_workers(count // 10, 24, repeats)]
     return xr.merge(parts, combine_attrs="no_conflicts")
@@ -232,10 +211,10 @@ def draw(result: xr.Dataset) -> Figure:
     figure = blank(13, 4)
     left, right = figure.subplots(1, 2, width_ratios=[1, 1.8])
     contacts = {str(name): result.cost.sel(contact=name) for name in result.contact.to_numpy()}
-    others = {label: result[name] for name, label in _BARS.items()}
+    others = {label: result.law_time.sel(law=law) for law, label in LAWS.items()} | {"scipy brentq": result.law_brentq}
     for ax, groups, width, title in (
         (left, contacts, 0.38, "Paraboloids: the sum, one core"),
-        (right, others, 0.26, "Other shapes with JKR: force, radius and stiffness"),
+        (right, others, 0.2, "Shapes, 200 steps each way, set-up included"),
     ):
         for number, (label, values) in enumerate(groups.items()):
             bars = ax.bar(np.arange(values.size) + 1.06 * width * number, values.to_numpy(), width, label=label)
@@ -244,8 +223,8 @@ def draw(result: xr.Dataset) -> Figure:
         ax.set_ylim(top=50.0 * max(float(values.max()) for values in groups.values()))
         ax.legend(frameon=False, ncols=3, loc="upper left")
     left.set_xticks(np.arange(3) + 0.2, ["roughmdr\n(both ways)", "NumPy\n(loading)", "scipy brentq\n(loading)"])
-    names = [str(shape).replace("_", "\n") for shape in result["shape"].to_numpy()]
-    right.set_xticks(np.arange(len(names)) + 0.28, names)
+    names = [str(shape).replace("_", "\n") for shape in result["law_shape"].to_numpy()]
+    right.set_xticks(np.arange(len(names)) + 0.3, names)
     return figure
 
 

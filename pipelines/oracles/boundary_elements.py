@@ -10,7 +10,7 @@ more.
 """
 
 import math
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -55,34 +55,24 @@ class HeightMap:
         The force is infinite from the mean height on: no half-space whose mean plane stays fits in. It starts from the
         pressures of the last call: call it with separations in order. OutOfRange where it does not converge.
         """
+        from ContactMechanics.Optimization import constrained_conjugate_gradients
+
         deepest = float(self.height.max()) - separation
         if deepest <= 0.0:
             return Pressed(0.0, 0.0)
         if separation <= float(self.height.mean()):
             return Pressed(math.inf, self.size**2)
-        found = forces_of_cells(self._half_space, self.height / deepest, separation / deepest, self._forces / deepest)
-        if found is None:
+        found = constrained_conjugate_gradients(
+            self._half_space, self.height / deepest, offset=-separation / deepest,
+            initial_forces=-self._forces / deepest if self._forces.any() else None,
+            thermotol=_RTOL_FORCE, pentol=_RTOL_OVERLAP, forcetol=_RTOL_OVERLAP / self.height.size,
+            maxiter=_MAX_ITERATIONS,
+        )  # fmt: skip
+        if not found.success:
             raise OutOfRange(f"separation is {separation:g} m: boundary elements do not converge")
-        self._forces = found * deepest
+        self._forces = np.asarray(found.jac) * deepest
         force = self.effective_modulus * self.size * float(self._forces.sum())
         return Pressed(force, float(np.mean(self._forces > 0.0)) * self.size**2)
-
-
-def forces_of_cells(half_space: Any, height: Floats, separation: float, start: Floats) -> Floats | None:
-    """Return the forces of the cells of a reduced problem, from a ``start`` like them; None where none are found."""
-    from ContactMechanics.Optimization import constrained_conjugate_gradients
-
-    found = constrained_conjugate_gradients(
-        half_space,
-        height,
-        offset=-separation,
-        initial_forces=-start if start.any() else None,
-        thermotol=_RTOL_FORCE,
-        pentol=_RTOL_OVERLAP,
-        forcetol=_RTOL_OVERLAP / height.size,
-        maxiter=_MAX_ITERATIONS,
-    )
-    return np.asarray(found.jac) if found.success else None
 
 
 def by_perimeter(pressure: Floats) -> float:

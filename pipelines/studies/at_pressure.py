@@ -12,7 +12,7 @@ import xarray as xr
 
 import roughmdr as rm
 from roughmdr.numerics.arguments import Floats
-from studies.comparison import HELD, PAIRS, draw_stated, held, in_cases, law_of, panels
+from studies.comparison import HELD, PAIRS, cases_of, draw_stated, held, in_cases, law_of, panels, percent
 from studies.hills.maps import MapCase
 from studies.study import Figure, Study, in_two_processes, table, without_limits
 from studies.surfaces import Surface, surface_of
@@ -168,7 +168,7 @@ def compare_adhering(case: Adhering) -> list[dict[str, Any]]:
             first = steady & side & (force > np.maximum.accumulate(np.append(force.min(), force))[:-1])
             for load, (least, most) in _LOADS.items():
                 there = first & (fine["force"] >= least * tension) & (fine["force"] < most * tension)
-                true, floor = ({name: each[there] for name, each in of.items()} for of in (truth, unknown))
+                true, floor = ({name: each[there] for name, each in numbers.items()} for numbers in (truth, unknown))
                 if there.any():
                     found = _row(law, true, floor, case.size, branch)
                     rows.append(labels | {"model": f"{model}, {branch}, {load}"} | found)
@@ -188,7 +188,7 @@ def _row(
     for control in _CONTROLS:
         values = truth[control]
         found = getattr(law.roughmdr, f"at_{control}")(values, branch=branch)
-        for quantity in (each for each, of in _ASKED if of == control):
+        for quantity in (each for each, given in _ASKED if given == control):
             error.append((found[quantity].to_numpy() - truth[quantity]) / scales[quantity])
             stated.append(found[f"{quantity}_model_error"].to_numpy() / scales[quantity])
             floor.append(unknown[quantity] + unknown[control])
@@ -203,12 +203,6 @@ def measure(quick: bool) -> xr.Dataset:
     labels = {name: ("case", [row[name] for row in rows]) for name in ("group", "model", "surface")}
     asked = [f"{quantity} at given {control}" for quantity, control in _ASKED]
     return xr.Dataset(in_cases(_WORDS, rows, "case", "asked", "step"), {**labels, "asked": asked})
-
-
-def methods(result: xr.Dataset) -> dict[str, Any]:
-    """Return the cases of each method."""
-    names = [f"{group}, {model}" for group, model in zip(result["group"].values, result["model"].values, strict=True)]
-    return {name: np.array(names) == name for name in dict.fromkeys(names)}
 
 
 def draw(result: xr.Dataset) -> Figure:
@@ -231,16 +225,17 @@ def draw(result: xr.Dataset) -> Figure:
 def report(result: xr.Dataset) -> str:
     """Return by method and by what is asked how large errors are, and how the stated ones do."""
     rows = []
-    for label, cases in methods(result).items():
+    methods = dict.fromkeys(zip(result["group"].values.tolist(), result["model"].values.tolist(), strict=True))
+    for group, model in methods:
         for name in result["asked"].values:
-            one = result.isel(case=np.flatnonzero(cases)).sel(asked=name)
+            one = cases_of(result, group=group, model=model).sel(asked=name)
             error, stated, unknown = (one[each].to_numpy() for each in ("error", "stated", "unknown"))
             known = np.isfinite(error) & np.isfinite(stated)
             if known.any():
                 off = np.abs(error[known])
                 sizes = [f"{100.0 * each:.2g} %" for each in np.quantile(off, [0.5, 0.9])]
-                sign = f"{100.0 * np.mean(error[known] > 0.0):.0f} %"
-                rows.append([label, str(name), *sizes, sign, *held(off, stated[known], unknown[known]).cells])
+                sign = percent(float(np.mean(error[known] > 0.0)), 0)
+                rows.append([f"{group}, {model}", str(name), *sizes, sign, *held(off, stated[known], unknown[known])])
     surfaces = np.unique(result["surface"].values).size
     head = ["method", "asked", "median", "90 % below", "too high", *HELD]
     return f"""Errors on {surfaces} surfaces, f from 0.3 to 15 %; errors below those of boundary elements count as held:

@@ -1,7 +1,7 @@
 """Our law beside another solution: laws along paths, numbers of all cases, errors, and how often a stated one holds."""
 
 from collections.abc import Mapping, Sequence
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -52,7 +52,7 @@ def _padded(rows: list[Any]) -> Floats:
     return found
 
 
-def of(result: xr.Dataset, **labels: Any) -> xr.Dataset:
+def cases_of(result: xr.Dataset, **labels: Any) -> xr.Dataset:
     """Return the cases of a result with these labels."""
     chosen = np.all([result[name].to_numpy() == label for name, label in labels.items()], axis=0)
     (dim,) = result[next(iter(labels))].dims
@@ -76,19 +76,6 @@ def median_and_largest(errors: xr.DataArray | Floats) -> str:
     return f"{100.0 * np.median(known):.2g} % ({100.0 * known.max():.2g})" if known.size else ""
 
 
-class Held(NamedTuple):
-    """Stated errors beside true ones."""
-
-    number: int
-    bounded: float  # share of the errors that the stated one bounds
-    within: float  # share of the errors that are within FACTOR of the stated one
-
-    @property
-    def cells(self) -> list[str]:
-        """Number and shares in a table."""
-        return [str(self.number), *(f"{100.0 * share:.0f} %" for share in self[1:])]
-
-
 HELD = ["errors", "below the estimate", f"within a factor of {FACTOR:g}"]  # heads of the cells
 
 
@@ -98,10 +85,9 @@ def bounds(error: Floats, stated: Floats, unknown: Floats | float = 0.0) -> tupl
     return error <= np.maximum(stated, unknown), near
 
 
-def held(error: Floats, stated: Floats, unknown: Floats | float = 0.0) -> Held:
-    """Return how often a stated error holds."""
-    bounded, near = bounds(error, stated, unknown)
-    return Held(error.size, float(np.mean(bounded)), float(np.mean(near)))
+def held(error: Floats, stated: Floats, unknown: Floats | float = 0.0) -> list[str]:
+    """Return how often a stated error holds, as the cells under ``HELD``."""
+    return [str(error.size), *(percent(float(np.mean(each)), 0) for each in bounds(error, stated, unknown))]
 
 
 def panels(width: float, height: float, count: int) -> tuple[Figure, list[Axes]]:

@@ -13,7 +13,7 @@ import xarray as xr
 import roughmdr as rm
 from roughmdr.elements.half_space import BoundaryElements
 from roughmdr.numerics.arguments import Floats
-from studies.comparison import INTERACTIONS, in_cases, law_of, median_and_largest, of, panels, percent
+from studies.comparison import INTERACTIONS, cases_of, in_cases, law_of, median_and_largest, panels, percent
 from studies.hills.maps import MapCase
 from studies.study import Figure, Study, in_two_processes, table, without_limits
 from studies.surfaces import surface_of
@@ -131,7 +131,7 @@ def draw(result: xr.Dataset) -> Figure:
     ):  # fmt: skip
         for model, colour in _COLOURS.items():
             for group, mark in zip(GROUPS, "os^x", strict=True):
-                own = of(result, group=group).sel(model=model)
+                own = cases_of(result, group=group).sel(model=model)
                 label = f"{model}, {group}" if panel is left else None
                 drawn = (own["contact_fraction_bem"], abs(errors(own, name)))
                 panel.loglog(*(each.to_numpy().ravel() for each in drawn), mark, color=colour, ms=4, label=label)
@@ -145,7 +145,7 @@ def report(result: xr.Dataset) -> str:
     """Return the errors by group and model, and how often the stated error holds."""
     rows, held = [], []
     for group, model in product(GROUPS, INTERACTIONS):
-        one = of(result, group=group).sel(model=model)
+        one = cases_of(result, group=group).sel(model=model)
         if not np.isfinite(one["conductance"]).any():
             continue
         for name, where in (("conductance", "separation"), ("conductance_under_load", "load")):

@@ -7,7 +7,7 @@ import numpy as np
 import xarray as xr
 
 import roughmdr as rm
-from studies.comparison import PAIRS, law_of, panels
+from studies.comparison import PAIRS, in_cases, law_of, panels
 from studies.study import Axes, Figure, Study, named, table
 
 MODULUS = 2e6  # [Pa]
@@ -27,7 +27,15 @@ DISTANCES = {False: (5.0, 7.0, 10.0, 14.0, 20.0), True: (7.0, 20.0)}
 COUNTS = {False: (25, 50, 200, 400), True: (16,)}
 _COUNTED_SPREADS = (0.3, 1.0)
 REALIZATIONS = {False: 3, True: 2}
-UNITS = {"pull_off_force": "N", "dissipated_energy": "J"}
+_CYCLE = {
+    "pull_off_force": ("pull-off force, below 0, located between the steps", "N"),
+    "pull_off_contacts": ("contacts at pull-off", "1"),
+    "contacts": ("contacts at closest approach", "1"),
+    "contact_fraction": ("contact fraction at closest approach", "1"),
+    "dissipated_energy": ("energy lost in the cycle", "J"),
+    "avalanche": ("contacts in the largest avalanche, 1 where all are independent", "1"),
+    "marked": ("steps at which contacts are too near each other for a coupling in pairs", "1"),
+}
 _COLOURS = {0.3: "#1b6ca8", 1.0: "#c8553d", 3.0: "#3d8c5a"}
 MODELS: dict[str, Any] = {"independent": None, "coupled": PAIRS[2]}
 
@@ -51,26 +59,14 @@ class Surface(NamedTuple):
         return rm.generate(section, seed=2026, realization=realization)
 
 
-class Cycle(NamedTuple):
-    """Numbers of a loading and unloading."""
-
-    pull_off_force: float  # [N], < 0, located between the steps
-    pull_off_contacts: float
-    contacts: float  # at closest approach
-    contact_fraction: float  # at closest approach
-    dissipated_energy: float  # [J]
-    avalanche: float  # contacts in the largest avalanche, 1 where all are independent
-    marked: float  # steps at which contacts are too near each other for a coupling in pairs
-
-
-def cycle(ensemble: xr.Dataset, interaction: Any, steps: int) -> Cycle:
-    """Return the numbers of loading in ``steps`` and of unloading in as many, until all contacts have parted."""
+def cycle(ensemble: xr.Dataset, interaction: Any, steps: int) -> dict[str, float]:
+    """Return ``_CYCLE`` of loading in ``steps`` and of unloading in as many, until all contacts have parted."""
     top = float(ensemble["height"].max()) + _CLEAR * PULL_OFF_LENGTH
     law = along(ensemble, np.linspace(top, -_DEPTH * PULL_OFF_LENGTH, steps), interaction)
     closest, marked = law.isel(step=steps - 1), law.get("marked_steps", 0.0)
     numbers = [law["pull_off_force"], law["pull_off_contacts"], closest["contact_count"], closest["contact_fraction"],
                law["dissipated_energy"][-1], law.get("avalanche_size_max", 1.0), marked]  # fmt: skip
-    return Cycle._make(map(float, numbers))
+    return dict(zip(_CYCLE, map(float, numbers), strict=True))
 
 
 def along(ensemble: xr.Dataset, separation: np.ndarray, interaction: Any) -> xr.Dataset:
@@ -94,17 +90,14 @@ def surfaces(quick: bool) -> list[Surface]:
 def measure(quick: bool) -> xr.Dataset:
     """Return the numbers of the cycles of all surfaces, with each model and for each realisation."""
     asked = surfaces(quick)
-    found = np.array([
-        [[cycle(ensemble, interaction, STEPS) for ensemble in realizations] for interaction in MODELS.values()]
-        for realizations in ([surface.generate(r) for r in range(REALIZATIONS[quick])] for surface in asked)
-    ])  # fmt: skip
-    over = ("surface", "model", "realization")
+    found = []
+    for surface in asked:
+        drawn = [surface.generate(r) for r in range(REALIZATIONS[quick])]
+        cycles = [[cycle(each, interaction, STEPS) for each in drawn] for interaction in MODELS.values()]
+        found.append({name: [[each[name] for each in row] for row in cycles] for name in _CYCLE})
     spread, asperities, distance = (list(each) for each in zip(*asked, strict=True))
     result = xr.Dataset(
-        {
-            name: (over, found[..., i], named(name.replace("_", " "), UNITS.get(name, "1")))
-            for i, name in enumerate(Cycle._fields)
-        },
+        in_cases(_CYCLE, found, "surface", "model", "realization"),
         {
             "model": list(MODELS),
             "spread": ("surface", spread, named("standard deviation of the heights over the pull-off length")),
@@ -123,7 +116,7 @@ def _refinement(quick: bool) -> float:
     for spread in _COUNTED_SPREADS:
         ensemble = Surface(spread, count, distance).generate(0)
         for interaction in MODELS.values():
-            coarse, fine = (cycle(ensemble, interaction, steps).pull_off_force for steps in (STEPS, 2 * STEPS))
+            coarse, fine = (cycle(ensemble, interaction, steps)["pull_off_force"] for steps in (STEPS, 2 * STEPS))
             changes.append(abs(coarse / fine - 1.0))
     return max(changes)
 

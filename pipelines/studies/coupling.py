@@ -12,7 +12,7 @@ from oracles.boundary_elements import HeightMap
 
 from roughmdr.interaction import solve
 from roughmdr.numerics.arguments import Floats
-from studies.comparison import PAIRS, in_cases, law_of, panels
+from studies.comparison import PAIRS, cases_of, in_cases, law_of, panels
 from studies.study import Figure, Study, named, table, timed
 from studies.versus_bem import without_grid
 from studies.versus_bem.ensembles import MODULUS, SIZE, Case, height_map, separations
@@ -108,8 +108,7 @@ def measure(quick: bool) -> xr.Dataset:
     """Return the points of all methods, and the cost for each number of asperities in a process of one core."""
     points = compare(quick)
     costs = [in_new_process(cost, count, NUMBA_NUM_THREADS="1", OMP_NUM_THREADS="1") for count in COUNTS[quick]]
-    found = in_cases(_POINT, [point._asdict() for point in points], "point")
-    found |= in_cases(_COST, [dict(zip(_COST, each, strict=True)) for each in costs], "asperities")
+    found = in_cases(_POINT, [point[2:] for point in points], "point") | in_cases(_COST, costs, "asperities")
     words = {name: ("point", [getattr(point, name) for point in points]) for name in ("method", "setting")}
     counts = ("asperities", np.array(COUNTS[quick], dtype=float), named("number of asperities"))
     return xr.Dataset(found, {**words, "asperities": counts})
@@ -127,9 +126,8 @@ def crossover(result: xr.Dataset) -> float:
 def draw(result: xr.Dataset) -> Figure:
     """Draw the error of each method over its run time, and run times over the number of asperities."""
     figure, (left, right) = panels(12, 5.2, 2)
-    names = result["method"].to_numpy()
-    for name in dict.fromkeys(names.tolist()):
-        own = result.isel(point=np.flatnonzero(names == name))
+    for name in dict.fromkeys(result["method"].to_numpy().tolist()):
+        own = cases_of(result, method=name)
         left.loglog(1e3 * own["seconds"], own["error"], "o-", ms=5, lw=1.2, label=name)
     left.set(xlabel="run time of a load [ms]", ylabel="relative error of the force")
     left.set_title("100 separated paraboloids, up to 5 % contact")

@@ -7,6 +7,7 @@ import xarray as xr
 
 import roughmdr as rm
 from roughmdr.ensemble.spectral.section import SpectrumAsperities
+from studies.comparison import in_cases
 from studies.study import Figure, Study, blank, named, table, without_limits
 
 HURST = (0.3, 0.5, 0.8)
@@ -15,6 +16,10 @@ METHODS = ("nayak", "nayak in pairs", "summits in pairs", "hills in pairs", "bou
 REALIZATIONS, QUICK = 64, 4
 _SIDE, _LONG, _SHORT = 1e-4, 5e-5, 6e-6
 _SLOPE = 1e-2  # small: nothing depends on it
+_WORDS = {
+    "force": ("force over the effective modulus", "m2"),
+    "contact_fraction": ("contact area over nominal area", "1"),
+}
 _PAIRS = {"model": "pairwise"}
 _COLOURS = dict(zip(METHODS, ("0.55", "#56b4e9", "#0072b2", "#d55e00", "k"), strict=True))
 _MARKERS = dict(zip(METHODS, "voDs ", strict=True))
@@ -33,21 +38,15 @@ def laws(hurst: float, realizations: int) -> dict[str, xr.Dataset]:
     nayak = {"source": "nayak", "patch": _SIDE, **moments._asdict()}
 
     def run(asperities: dict[str, Any], **more: Any) -> xr.Dataset:
-        return rm.run(
-            {
-                "title": "Surfaces of one spectrum",
-                "seed": 7,
-                "material": {"effective_modulus": 1.0},
-                "asperities": asperities,
-                "path": {"separation": [share * float(np.sqrt(moments.m0)) for share in SHARES]},
-                "output": {"variables": ["force", "contact_fraction"]},
-                "batch": {"realizations": realizations},
-                **more,
-            }
-        )
+        return rm.run({
+            "title": "Surfaces of one spectrum", "seed": 7, "material": {"effective_modulus": 1.0},
+            "asperities": asperities,
+            "path": {"separation": [share * float(np.sqrt(moments.m0)) for share in SHARES]},
+            "output": {"variables": list(_WORDS)}, "batch": {"realizations": realizations}, **more,
+        })  # fmt: skip
 
     hills = run(section, interaction=_PAIRS, reference={"model": "boundary_elements"})
-    reference = {name: hills[f"reference_{name}"] for name in ("force", "contact_fraction")}
+    reference = {name: hills[f"reference_{name}"] for name in _WORDS}
     summits = run({**section, "model": "summits"}, interaction=_PAIRS)
     found = (run(nayak), run(nayak, interaction=_PAIRS), summits, hills, xr.Dataset(reference))
     return dict(zip(METHODS, found, strict=True))
@@ -57,22 +56,11 @@ def measure(quick: bool) -> xr.Dataset:
     """Press surfaces of three Hurst exponents, many of each or a few."""
     with without_limits():
         found = [laws(hurst, QUICK if quick else REALIZATIONS) for hurst in HURST]
-    over = ("hurst", "solver", "realization", "step")
-    numbers = {
-        name: np.array([[each[method][name].to_numpy() for method in METHODS] for each in found])
-        for name in ("force", "contact_fraction")
-    }
-    return xr.Dataset(
-        {
-            "force": (over, numbers["force"], named("force over the effective modulus", "m2")),
-            "contact_fraction": (over, numbers["contact_fraction"], named("contact area over nominal area")),
-        },
-        {
-            "hurst": ("hurst", list(HURST), named("Hurst exponent")),
-            "solver": list(METHODS),
-            "share": ("step", list(SHARES), named("separation over r.m.s. height")),
-        },
-    )
+    numbers = [{name: [each[method][name] for method in METHODS] for name in _WORDS} for each in found]
+    hurst = ("hurst", list(HURST), named("Hurst exponent"))
+    share = ("step", list(SHARES), named("separation over r.m.s. height"))
+    variables = in_cases(_WORDS, numbers, "hurst", "solver", "realization", "step")
+    return xr.Dataset(variables, {"hurst": hurst, "solver": list(METHODS), "share": share})
 
 
 def means(result: xr.Dataset) -> tuple[xr.DataArray, xr.DataArray]:

@@ -91,7 +91,7 @@ def test_coupling_fades_with_the_distance() -> None:
     for distance in (10.0, 100.0, 1000.0):
         ensemble = Surface(0.3, 9, distance).generate(0)
         independent, coupled = (cycle(ensemble, model, 10) for model in MODELS.values())
-        changes.append(abs(coupled.dissipated_energy / independent.dissipated_energy - 1.0))
+        changes.append(abs(coupled["dissipated_energy"] / independent["dissipated_energy"] - 1.0))
     assert changes[2] < 0.2 * changes[1] < 0.04 * changes[0]
 
 

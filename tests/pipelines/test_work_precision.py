@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 import xarray as xr
 from studies import work_precision
-from studies.work_precision import TARGETS, cheapest, points_of, report
+from studies.comparison import cases_of
+from studies.work_precision import TARGETS, cheapest, report
 from studies.work_precision.points import QUANTITIES, Method, Point
 from studies.work_precision.surface import SURFACES, simulate
 from studies.work_precision.tip import DEPTHS
@@ -22,7 +23,7 @@ def result() -> xr.Dataset:
 
 def points(result: xr.Dataset, scene: str, method: str) -> tuple[np.ndarray, np.ndarray]:
     """Errors [point, quantity] and evaluations of a method."""
-    own = points_of(result, scene=scene, method=method)
+    own = cases_of(result, scene=scene, method=method)
     return own.error.to_numpy(), own.evaluations.to_numpy()
 
 
@@ -80,7 +81,7 @@ def test_the_expected_law_is_exact_for_less_than_one_realisation(result: xr.Data
 def test_errors_that_are_asked_for_are_met(result: xr.Dataset) -> None:
     for scene in (HERTZ, JKR):
         for method in ("sampled", "stratified", "auto"):
-            own = points_of(result, scene=scene, method=f"{method}, error asked for")
+            own = cases_of(result, scene=scene, method=f"{method}, error asked for")
             assert (own.error.sel(quantity="force") <= 2.0 * own.setting).all()  # of two runs each
 
 

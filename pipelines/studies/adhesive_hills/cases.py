@@ -9,7 +9,7 @@ from oracles.adhesive_elements import AdhesiveMap
 
 from roughmdr.ensemble.maps.summits import find_summits
 from roughmdr.numerics.arguments import Floats
-from studies.comparison import FACTOR, bounds, in_cases, law_of, law_or_nan, of
+from studies.comparison import FACTOR, bounds, cases_of, in_cases, law_of, law_or_nan
 from studies.hills.maps import POINTS, SIDE, MapCase, hills_of, square
 from studies.study import table
 
@@ -147,7 +147,7 @@ def report_stated(result: xr.Dataset) -> str:
     """Return the table of how often the stated error bounds, by sets."""
     rows = []
     for name in SETS:
-        own = of(result, set=name)
+        own = cases_of(result, set=name)
         rms, largest, stated, inside = (own[f"error_{each}"].to_numpy() for each in Stated._fields)
         bounded, near = bounds(largest, stated)
         counts = [f"{np.count_nonzero(each)} of {each.size}" for each in (rms <= stated, bounded, near)]

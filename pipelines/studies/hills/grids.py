@@ -75,7 +75,7 @@ def report_grids(result: xr.Dataset) -> str:
     for name in [str(each) for each in result if str(each).startswith("grid_")]:
         true, stated = result[name].to_numpy()
         sizes = [f"{100.0 * size:.1f} %" for size in (np.sqrt(np.mean(true**2)), np.median(stated))]
-        rows.append([name[5:].replace("_at_", " at given ").replace("_", " "), *sizes, *held(true, stated).cells])
+        rows.append([name[5:].replace("_at_", " at given ").replace("_", " "), *sizes, *held(true, stated)])
     found = table(["", "true, r.m.s.", "stated, median", *HELD], rows)
     return (
         f"Boundary elements of [reference], {int(result['references'])} cases, grids {_FINER} times as fine:\n\n{found}"

@@ -81,14 +81,21 @@ def report_files(result: xr.Dataset) -> str:
         return (
             f"Measured maps were left out: the environment variable {FOLDER} names no folder with {' or '.join(FILES)}."
         )
-    names = [str(name) for name in result["surface"].to_numpy()]
-    rows = [row for name in names for row in _rows(name, result.sel(surface=name))]
+    rows, described = [], []
+    for name in map(str, result["surface"].to_numpy()):
+        own = result.sel(surface=name)
+        described.append(_described(name, own))
+        for method in FREE_METHODS:
+            force, area, stiffness = (errors_on_files(own, each).sel(surface_solver=method) for each in QUANTITIES)
+            known = np.isfinite(force.to_numpy())
+            mean = f"{100 * float(force.mean()):+.1f} %" if known.any() else "-"
+            last = percent(float(own["fraction"].to_numpy()[known].max(initial=-np.inf)), 0)
+            rows.append([name, method, percent(rms(force)), mean, percent(rms(area), 0), percent(rms(stiffness)), last])
     head = ["map", "method", "force, rms", "mean", "area, rms", "stiffness, rms", "answers up to"]
-    described = " ".join(_described(name, result.sel(surface=name)) for name in names)
     return (
         "Measured maps, squares from the middle, against boundary elements of a free half-space on the same points: "
         "errors of the forces of all cells, those at the border too, where summits beyond it are missing."
-        f"\n\n{table(head, rows)}\n\n{described}"
+        f"\n\n{table(head, rows)}\n\n{' '.join(described)}"
     )
 
 
@@ -96,17 +103,6 @@ def errors_on_files(result: xr.Dataset, quantity: str = "force") -> xr.DataArray
     """Return relative errors on measured maps over surface, surface_solver and fraction."""
     values = result[f"surface_{quantity}"]
     return values.drop_sel(surface_solver="free elements") / values.sel(surface_solver="free elements", drop=True) - 1.0
-
-
-def _rows(name: str, own: xr.Dataset) -> list[list[str]]:
-    rows = []
-    for method in FREE_METHODS:
-        force, area, stiffness = (errors_on_files(own, each).sel(surface_solver=method) for each in QUANTITIES)
-        known = np.isfinite(force.to_numpy())
-        mean = f"{100 * float(force.mean()):+.1f} %" if known.any() else "-"
-        last = percent(float(own["fraction"].to_numpy()[known].max()) if known.any() else np.nan, 0)
-        rows.append([name, method, percent(rms(force)), mean, percent(rms(area), 0), percent(rms(stiffness)), last])
-    return rows
 
 
 def _described(name: str, own: xr.Dataset) -> str:

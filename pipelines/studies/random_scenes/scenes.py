@@ -42,6 +42,7 @@ PARAMETERS: dict[str, dict[str, tuple[float, float]]] = {
     "capped_paraboloid": {"radius": WIDE, "cap_radius": (1.0, 3.0), "blend_radius": NARROW},
     "rounded_punch": {"flat_radius": NARROW, "edge_radius": ROUND},
 }
+_PLACEMENTS = {"placement": "hexagonal", "vacancies": True}, {"placement": "hard_core", "min_distance": 1e-9}
 
 
 def write_inputs(folder: Path) -> None:
@@ -145,11 +146,7 @@ def random_asperities(draw: Draw, frame: Frame, shape: str) -> Table:
             name, ends = next(iter(PARAMETERS[shape].items()))
             section["second"][name] = number(draw, *ends, 1.0 if name == "slope" else frame.size)
     if seldom(draw, 20):
-        section |= draw(
-            st.sampled_from(
-                ({"placement": "hexagonal", "vacancies": True}, {"placement": "hard_core", "min_distance": 1e-9})
-            )
-        )
+        section |= draw(st.sampled_from(_PLACEMENTS))
     return section | parameters
 
 

@@ -5,7 +5,6 @@ from itertools import product
 from typing import NamedTuple
 
 import numpy as np
-import xarray as xr
 
 from studies.comparison import PAIRS, law_of
 from studies.versus_bem.ensembles import MODULUS, Case, separations
@@ -26,14 +25,6 @@ class Crowd(NamedTuple):
     asperities: int
     roughness: float
     seed: int
-
-    def generate(self) -> xr.Dataset:
-        """Return the ensemble, with positions."""
-        ensemble = Case("random", self.shape, self.asperities, self.roughness, 64, self.seed).generate()
-        if self.decades and self.shape == "paraboloid":
-            spread = np.random.default_rng(self.seed).uniform(-self.decades, 0.0, self.asperities)
-            ensemble["radius"] = ensemble["radius"] * 10.0**spread
-        return ensemble
 
 
 class Steps(NamedTuple):
@@ -56,7 +47,10 @@ def crowds(quick: bool) -> Iterator[Crowd]:
 
 def judge(crowd: Crowd) -> Steps:
     """Press a crowd from first contact to 0.2 of the patch, as independent asperities have it."""
-    ensemble = crowd.generate()
+    ensemble = Case("random", crowd.shape, crowd.asperities, crowd.roughness, 64, crowd.seed).generate()
+    if crowd.decades:
+        spread = np.random.default_rng(crowd.seed).uniform(-crowd.decades, 0.0, crowd.asperities)
+        ensemble["radius"] = ensemble["radius"] * 10.0**spread
     along = separations(ensemble, _FRACTIONS)
     along = along[np.isfinite(along)]
     found, tight = (

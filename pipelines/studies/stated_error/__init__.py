@@ -17,7 +17,7 @@ import roughmdr as rm
 from roughmdr.numerics.arguments import Floats
 from roughmdr.scene import Scene, read
 from roughmdr.shapes import SHAPES
-from studies.comparison import draw_stated, panels
+from studies.comparison import cases_of, draw_stated, in_cases, panels
 from studies.stated_error.contacts import ContactPath, contact_path
 from studies.stated_error.expected import ORDERS, ExpectedForce
 from studies.stated_error.scenes import ADHESIONS, ESTIMATORS, RandomScene, scene
@@ -26,6 +26,11 @@ from studies.study import Figure, Study, in_two_processes, named, table, without
 SCENES, QUICK = 200, 60
 FINER = 10.0  # how many times more accurate than the stated error a reference is at least
 HONEST = 0.99  # the share of scenes whose true error is to be below the stated one
+_WORDS = {
+    "true_error": ("true error over the largest force", "1"),
+    "stated_error": ("numerical_error", "1"),
+    "honest": ("1 where the true error is within", "1"),
+}
 _MIN_ERROR = 1e-17  # where errors of 0 are drawn
 
 
@@ -108,23 +113,12 @@ def measure(quick: bool) -> xr.Dataset:
 
 def as_dataset(drawn: list[RandomScene], judged: list[Judged]) -> xr.Dataset:
     """Return the errors of each scene that was not refused."""
-    computed = [pair for pair in zip(drawn, judged, strict=True) if not pair[1].refused]
-    rows = [(*one[:4], *errors[:2], errors.honest) for one, errors in computed]
-    number, shape, adhesion, estimator, true, stated, honest = ([*column] for column in zip(*rows, strict=True))
-    return xr.Dataset(
-        {
-            "true_error": ("scene", true, named("true error over the largest force")),
-            "stated_error": ("scene", stated, named("numerical_error")),
-            "honest": ("scene", np.array(honest, dtype=np.int8), named("1 where the true error is within")),
-        },
-        {
-            "scene": ("scene", number, named("number of the scene")),
-            "estimator": ("scene", estimator),
-            "adhesion": ("scene", adhesion),
-            "shape": ("scene", shape),
-        },
-        {"refused": len(drawn) - len(rows)},
-    )
+    computed = [(one, errors) for one, errors in zip(drawn, judged, strict=True) if not errors.refused]
+    words = ("estimator", "adhesion", "shape")
+    labels = {name: ("scene", [getattr(one, name) for one, _ in computed]) for name in words}
+    number = ("scene", [one.number for one, _ in computed], named("number of the scene"))
+    numbers = in_cases(_WORDS, [(*errors[:2], errors.honest) for _, errors in computed], "scene")
+    return xr.Dataset(numbers, {"scene": number, **labels}, {"refused": len(drawn) - len(computed)})
 
 
 def draw(result: xr.Dataset) -> Figure:
@@ -141,7 +135,7 @@ def report(result: xr.Dataset) -> str:
     """Return the share of honest scenes, those that are not, and how pessimistic the bound is."""
     rows = []
     for name in (each for each in ESTIMATORS if each in result.estimator):
-        own = result.isel(scene=np.flatnonzero(result.estimator == name))
+        own = cases_of(result, estimator=name)
         true, stated = own.true_error.to_numpy(), own.stated_error.to_numpy()
         worst = float(np.max(true[stated > 0.0] / stated[stated > 0.0], initial=0.0))
         cells = [name, f"{own.sizes['scene']}", f"{int(own.honest.sum())}"]

@@ -8,7 +8,7 @@ import xarray as xr
 from oracles.adhesive_elements import AdhesiveMap
 
 from roughmdr.numerics.arguments import Floats
-from studies.comparison import in_cases, of, panels
+from studies.comparison import cases_of, in_cases, panels
 from studies.study import Axes, Figure, Study, table, timed
 from studies.versus_adhesive_bem.cases import DETACHED, MODELS, WORK, Case, law
 from studies.versus_bem.ensembles import distances, height_map
@@ -173,7 +173,7 @@ def _by_tabor(panel: Axes, result: xr.Dataset) -> None:
     numbers, spacings = (result[name].to_numpy().tolist() for name in ("asperities", "spacing"))
     groups = sorted(set(zip(numbers, spacings, strict=True)))
     for (number, spacing), marker in zip(groups, "Dsov", strict=False):
-        own = of(result, asperities=number, spacing=spacing)
+        own = cases_of(result, asperities=number, spacing=spacing)
         for name in ("second",) if number == 1 else ("independent", "second"):
             found = [judge(own.isel(case=i), name) for i in range(own.sizes["case"])]
             errors = [100.0 * max(one.loading, one.unloading) for one in found]

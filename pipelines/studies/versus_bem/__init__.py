@@ -200,7 +200,7 @@ def report(result: xr.Dataset) -> str:
         coefficients.append([name, *(_quantiles(error[part] / np.sqrt(fraction[part])) for part in parts)])
         if own.any():
             told = told_by("independent") if name == "crowd" else estimates(fraction, group)
-            estimated.append([name, *held(np.abs(error[own]), told[own]).cells])
+            estimated.append([name, *held(np.abs(error[own]), told[own])])
     for name, (low, high) in itertools.product(GROUPS, _FINER_BINS):
         own = (group == name) & (fraction > low) & (fraction <= high)
         if own.any():
@@ -212,7 +212,7 @@ def report(result: xr.Dataset) -> str:
         off, said = np.abs(errors(result, order, False)), told_by(order)
         own = np.isfinite(off) & np.isfinite(said) & (group == name)
         if own.any():
-            stated.append([order[-1], name, *held(off[own], said[own], unknown[own]).cells])
+            stated.append([order[-1], name, *held(off[own], said[own], unknown[own])])
     fine = result.isel(case=np.flatnonzero(result["seed"].to_numpy() >= _FINE_SEED))
     finest = [_fine(fine.isel(step=i)) for i in range(fine.sizes["step"]) if fine["force_bem"][:, i].notnull().any()]
     seconds = " and ".join(f"{1e3 * float(result[name].median()):.3g} ms" for name in ("seconds_second", "seconds_bem"))

@@ -10,6 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import xarray as xr
 
+from studies.comparison import cases_of, in_cases
 from studies.study import Figure, Study, blank, named, table, without_limits
 from studies.work_precision import surface, tip
 from studies.work_precision.points import QUANTITIES, Method, Reference
@@ -24,6 +25,11 @@ class Part(NamedTuple):
 
 
 PARTS = (Part(tip.TIPS, tip.METHODS, tip.reference), Part(surface.SURFACES, surface.METHODS, surface.reference))
+_POINT = {
+    "setting": ("what the error is set by", "1"),
+    "seconds": ("run time of a curve", "s"),
+    "evaluations": ("evaluations of a state, a profile, an integrand or a spring for a curve", "1"),
+}
 TARGETS = (0.1, 0.01, 1e-3, 1e-4)
 _MIN_ERROR = 1e-16  # lower errors are drawn here
 _COLOURS = [f"C{number}" for number in range(10)] + ["#1b1b1b", "#b8860b", "#3cb371", "#c71585", "#4169e1"]
@@ -38,17 +44,13 @@ def measure(quick: bool) -> xr.Dataset:
                 exact = part.reference(scene, quick=quick)
                 for method in part.methods:
                     found += [(title, method, *point) for point in method.points(scene, exact, quick)]
-    titles, methods, settings, errors, seconds, evaluations = map(list, zip(*found, strict=True))
-    counted = named("evaluations of a state, a profile, an integrand or a spring for a curve")
-    competes = [int(method.competes) for method in methods]
+    titles, methods, settings, *numbers = map(list, zip(*found, strict=True))
     return xr.Dataset(
         {
-            "error": (("point", "quantity"), errors, named("relative error of a quantity")),
-            "seconds": ("point", seconds, named("run time of a curve", "s")),
-            "evaluations": ("point", np.array(evaluations, dtype=float), counted),
-            "setting": ("point", np.array(settings, dtype=float), named("what the error is set by")),
+            "error": (("point", "quantity"), numbers[0], named("relative error of a quantity")),
+            **in_cases(_POINT, list(zip(settings, *numbers[1:], strict=True)), "point"),
             "setting_of": ("point", [method.setting for method in methods]),
-            "competes": ("point", competes, named("whether it may be the cheapest")),
+            "competes": ("point", [int(each.competes) for each in methods], named("whether it may be the cheapest")),
         },
         {
             "scene": ("point", titles),
@@ -56,12 +58,6 @@ def measure(quick: bool) -> xr.Dataset:
             "quantity": list(QUANTITIES),
         },
     )
-
-
-def points_of(result: xr.Dataset, **names: str) -> xr.Dataset:
-    """Return the points of one ``scene``, one ``method`` or both."""
-    chosen = np.all([result[key].to_numpy() == name for key, name in names.items()], axis=0)
-    return result.isel(point=np.flatnonzero(chosen))
 
 
 def cheapest(result: xr.Dataset, scene: str, quantity: str, error: float) -> xr.Dataset | None:
@@ -80,11 +76,11 @@ def report(result: xr.Dataset) -> str:
         rows = [
             [scene, *(_in_words(cheapest(result, scene, quantity, error)) for error in TARGETS)]
             for scene in _unique(result.scene)
-            if not np.isnan(points_of(result, scene=scene).error.sel(quantity=quantity)).all()
+            if not np.isnan(cases_of(result, scene=scene).error.sel(quantity=quantity)).all()
         ]
         lines += [table([f"error of the {quantity}", *(f"{100 * error:g} %" for error in TARGETS)], rows), ""]
     rows = []
-    asked_for = points_of(result, method="auto, error asked for")
+    asked_for = cases_of(result, method="auto, error asked for")
     for point in (asked_for.isel(point=number) for number in range(asked_for.sizes["point"])):
         scene, error, found = point.scene.item(), float(point.setting), float(point.error.sel(quantity="force"))
         best = _in_words(cheapest(result, scene, "force", error))
@@ -117,11 +113,11 @@ def draw(result: xr.Dataset) -> Figure:
     panels = figure.subplots(2, len(scenes), squeeze=False)
     colours = dict(zip(_unique(result.method), _COLOURS, strict=False))
     for column, scene in zip(panels.T, scenes, strict=True):
-        own = points_of(result, scene=scene)
+        own = cases_of(result, scene=scene)
         second = "contact area" if np.isnan(own.error.sel(quantity="pull-off force")).all() else "pull-off force"
         for panel, quantity in zip(column, ("force", second), strict=True):
             for name in _unique(own.method):
-                curve = points_of(own, method=name)
+                curve = cases_of(own, method=name)
                 error = np.maximum(curve.error.sel(quantity=quantity).to_numpy(), _MIN_ERROR)
                 marker, size = ("*", 12.0) if curve.sizes["point"] == 1 else ("o", 3.5)
                 line = f"{marker}{'-' if curve.competes.all() else ':'}"
