@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 import xarray as xr
-from studies.comparison import law_of, panels
+from studies.comparison import PAIRS, law_of, panels
 from studies.study import Figure, Study, named
 
 import roughmdr as rm
@@ -14,11 +14,8 @@ MODULUS = 3e6 / (1.0 - 0.49**2)  # [Pa]
 PATCH = 1e-3  # [m]
 ASPERITIES = {False: 2000, True: 200}
 MODELS: dict[str, Any] = {
-    "independent": None,
-    "mean field": "mean_field",
-    "pairwise, order 1": {"model": "pairwise", "order": 1},
-    "pairwise, order 2": "pairwise",
-}
+    "independent": None, "mean field": "mean_field", **{f"pairwise, order {n}": pairs for n, pairs in PAIRS.items()}
+}  # fmt: skip
 COLOURS = ("0.5", "#8a5fb0", "#1b6ca8", "#c8553d")
 
 

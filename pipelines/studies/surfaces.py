@@ -12,7 +12,7 @@ from roughmdr.numerics.arguments import Floats
 from studies.hills.maps import SIDE, MapCase, hills_of, where_reached
 from studies.versus_bem.ensembles import SIZE, Case
 
-_COARSER = 4  # of the points along a side, where separations are looked for, one in so many
+_COARSER = 4  # points of the grid for one of that on which separations are looked for
 
 
 class Surface(NamedTuple):

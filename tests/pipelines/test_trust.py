@@ -10,7 +10,6 @@ from oracles.gaussian_maps import gaussian_map
 from studies.trust import STUDY, errors
 from studies.trust.samples import QUICK as SAMPLES
 from studies.trust.scenes import CASES, QUICK
-from studies.trust.truth import Path as FlatPath
 from studies.trust.truth import by_boundary_elements, by_pairs, by_range_of_adhesion, refined
 
 import roughmdr as rm
@@ -58,14 +57,14 @@ def hexagonal() -> xr.Dataset:
 def test_oracles_agree_on_contacts_far_apart() -> None:
     """Pairs are right to the third power of radius over distance; boundary elements to some per mille."""
     ensemble, h = hexagonal(), -2e-6
-    pairs, _ = by_pairs(ensemble, MODULUS, 0.0, FlatPath(np.linspace(1e-6, h, 5), 4))
+    pairs, _ = by_pairs(ensemble, MODULUS, 0.0, h, h)
     alone = float(rm.load_separation(ensemble, separation=[h], effective_modulus=MODULUS)["force"][0])
     assert by_boundary_elements(ensemble, 256, MODULUS, h) == pytest.approx(pairs, rel=0.005)
     assert pairs > 1.05 * alone
 
 
 def test_the_range_of_adhesion_matters_less_where_jkr_holds() -> None:
-    path = FlatPath(np.linspace(3e-8, -3e-8, 40), 39)
+    path = np.linspace(3e-8, -3e-8, 40)
     soft, stiff = (by_range_of_adhesion(hexagonal(), modulus, 0.05, path) for modulus in (1e6, 1e9))
     assert abs(soft) < 0.1 * abs(stiff)
 

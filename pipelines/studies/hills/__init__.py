@@ -38,11 +38,8 @@ PERSSON = {"Persson, gamma 0.45": 0.45, "Persson, gamma 1": 1.0}
 METHODS = ("summits", "summits in pairs", "hills", *PERSSON, *(f"elements, {points} points" for points in COARSE))
 RANGES = ((0.003, 0.01), (0.01, 0.05), (0.05, 0.2))
 """Ranges of the contact fraction over which errors are taken together."""
-_STYLES = dict(
-    zip(METHODS, ((colour, marker) for colour, marker in zip(
-        ("0.45", "#0072b2", "#d55e00", "#009e73", "#66c2a5", "#e5b8d4", "#cc79a7", "#7b3f61"), "vso^PDDD", strict=True
-    )), strict=True)
-)  # fmt: skip
+_COLOURS = ("0.45", "#0072b2", "#d55e00", "#009e73", "#66c2a5", "#e5b8d4", "#cc79a7", "#7b3f61")
+_STYLES = dict(zip(METHODS, zip(_COLOURS, "vso^PDDD", strict=True), strict=True))
 _CURVES = METHODS[:4]  # methods whose errors are drawn over the contact fraction
 
 

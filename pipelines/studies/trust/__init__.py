@@ -21,7 +21,6 @@ from studies.trust.samples import CASES as SURFACES
 from studies.trust.samples import measure_samples, report_samples
 from studies.trust.scenes import CASES, QUICK, Case
 from studies.trust.truth import MAPS, by_boundary_elements, by_pairs, by_range_of_adhesion, of_map
-from studies.trust.truth import Path as FlatPath
 from studies.versus_bem.ensembles import side, write_map
 
 _TOLD = ("contact", "model error", "trust", "warning")
@@ -61,7 +60,8 @@ def carry_out(case: Case, folder: Path) -> dict[str, Any]:
     at = result.isel(step=closest)
     found |= {name: float(at[name]) for name in ("contact_fraction", "separation", "force")}
     found |= {"model_error": float(at["model_error_curve"]), "pull_off": float(result.get("pull_off_force", math.nan))}
-    found |= _truth(case, file, found["separation"], FlatPath(result["separation"].to_numpy(), closest))
+    path = result["separation"].to_numpy()
+    found |= _truth(case, file, path[: closest + 1], float(path[-1]))
     size = case.surface.size if case.surface else side(_ensemble(file))
     radius = size * math.sqrt(float(at["contact_fraction"] / (math.pi * at["contact_count"])))
     return found | {"radius_points": radius / found["radius_points"], "printed": "\n".join(_told(done.stdout))}
@@ -77,9 +77,9 @@ def _told(printed: str) -> list[str]:
     return found
 
 
-def _truth(case: Case, file: Path, separation: float, path: FlatPath) -> dict[str, float]:
+def _truth(case: Case, file: Path, loading: Floats, end: float) -> dict[str, float]:
     """Return true forces [N], and the spacing of the grid [m] in place of the points of a radius."""
-    scene = read(file)
+    scene, separation = read(file), float(loading[-1])
     modulus, work = scene.effective_modulus, scene.work
     if case.surface is not None:
         several = range(1, MAPS + 1) if case.oracle == "maps" else (1,)
@@ -91,10 +91,10 @@ def _truth(case: Case, file: Path, separation: float, path: FlatPath) -> dict[st
     if case.oracle == "boundary elements":
         force = by_boundary_elements(ensemble, case.points, modulus, separation)
         return {"true_force": force, "scatter": 0.0, "radius_points": side(ensemble) / case.points}
-    force, pull_off = by_pairs(ensemble, modulus, work, path)
+    force, pull_off = by_pairs(ensemble, modulus, work, separation, end)
     if not work:
         return {"true_force": force, "scatter": 0.0}
-    longer = by_range_of_adhesion(ensemble, modulus, work, path)
+    longer = by_range_of_adhesion(ensemble, modulus, work, loading)
     return {"true_force": force + longer, "scatter": 0.0, "true_pull_off": pull_off}
 
 

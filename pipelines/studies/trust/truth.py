@@ -5,7 +5,7 @@ Pairs adhere as in JKR; the difference that the range of adhesion makes is added
 
 import math
 from collections.abc import Sequence
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -21,13 +21,6 @@ from studies.versus_bem.ensembles import distances, height_map, side
 _LIFTED = 0.3  # largest lift of the surface between contacts by their pressure, over the deepest overlap
 _LOADING, _UNLOADING = 60, 200  # steps of a path that pairs are taken along
 MAPS = 5  # Gaussian maps whose mean force is compared with the expected law
-
-
-class Path(NamedTuple):
-    """Separations [m] of a run, which come down to the step of the closest approach and may go back."""
-
-    separation: Floats
-    closest: int
 
 
 def by_boundary_elements(ensemble: xr.Dataset, points: int, modulus: float, separation: float) -> float:
@@ -49,20 +42,19 @@ def refined(height: Floats, factor: int) -> Floats:
     return np.asarray(np.fft.ifft2(np.fft.ifftshift(np.pad(waves, added))).real * factor**2)
 
 
-def by_pairs(ensemble: xr.Dataset, modulus: float, work: float, path: Path) -> tuple[float, float]:
-    """Return the force [N] of paraboloids at the closest approach, and the least one of the unloading (NaN: none)."""
-    down, up = path.separation[: path.closest + 1], path.separation[path.closest :]
-    tops = _tops(ensemble, float(down[-1]))
+def by_pairs(ensemble: xr.Dataset, modulus: float, work: float, closest: float, end: float) -> tuple[float, float]:
+    """Return the force [N] of paraboloids at the closest separation, and the least one up to the end (NaN: none)."""
+    tops = _tops(ensemble, closest)
     x, y, height, radius = (tops[name].to_numpy() for name in ("x", "y", "height", "radius"))
     green = periodic_green(x, y, side(ensemble), modulus)
     pressed = Paraboloids(height, radius, green, modulus, work)
-    for h in np.linspace(height.max(), down[-1], _LOADING):
+    for h in np.linspace(height.max(), closest, _LOADING):
         force = pressed.press(float(h)).force
-    unloading = np.linspace(up[0], up[-1], _UNLOADING if up.size > 1 else 1)[1:]
+    unloading = np.linspace(closest, end, _UNLOADING if end > closest else 1)[1:]
     return force, min((pressed.press(float(h)).force for h in unloading), default=math.nan)
 
 
-def by_range_of_adhesion(ensemble: xr.Dataset, modulus: float, work: float, path: Path) -> float:
+def by_range_of_adhesion(ensemble: xr.Dataset, modulus: float, work: float, path: Floats) -> float:
     """Return how much more force [N] at closest approach an adhesion has that reaches as far as that of van der Waals.
 
     It is that of independent asperities, by Dugdale's model beside JKR.
@@ -70,7 +62,7 @@ def by_range_of_adhesion(ensemble: xr.Dataset, modulus: float, work: float, path
 
     def force(**range_of_adhesion: Any) -> float:
         asked = {"effective_modulus": modulus, "work": work, "variables": "force", **range_of_adhesion}
-        return float(law_of(ensemble, separation=path.separation[: path.closest + 1], **asked)["force"][-1])
+        return float(law_of(ensemble, separation=path, **asked)["force"][-1])
 
     return force(adhesion="dugdale", range=ASSUMED_RANGE) - force()
 
