@@ -5,8 +5,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import xarray as xr
 
-from roughmdr.numerics.arguments import Floats
-from studies.adhesive_hills.cases import CASES, FEW, MAPS, QUICK, Adhesive, Case, Law, measure_stated, report_stated
+from studies.adhesive_hills.cases import CASES, FEW, MAPS, QUICK, Adhesive, Case, measure_stated, report_stated
 from studies.comparison import in_cases, panels, percent, rms
 from studies.hills.maps import SIDE
 from studies.study import Axes, Figure, Study, table
@@ -33,11 +32,11 @@ _NUMBERS = {
 }
 
 
-def laws(adhesive: Adhesive, separation: Floats) -> list[Law]:
-    """Return the laws by boundary elements, on a coarser grid and with a longer range, and by each method."""
-    points, reach = adhesive.case.points, adhesive.reach
-    hills, summits = adhesive.hills, adhesive.summits
-    return [
+def press(case: Case) -> dict[str, Any]:
+    """Return the numbers of a case, the laws by ``ELEMENTS`` and then by ``METHODS``."""
+    adhesive, points = Adhesive(case), case.points
+    separation, reach, hills, summits = adhesive.path(), adhesive.reach, adhesive.hills, adhesive.summits
+    found = [
         adhesive.by_elements(separation, points, reach),
         adhesive.by_elements(separation, _COARSE * points, reach),
         adhesive.by_elements(separation, _COARSE * points, LONGER * reach),
@@ -47,13 +46,6 @@ def laws(adhesive: Adhesive, separation: Floats) -> list[Law]:
         adhesive.law(hills, separation, interaction="pairwise"),
         adhesive.law(hills, separation, adhesion="dugdale", strength=adhesive.work / reach),
     ]
-
-
-def press(case: Case) -> dict[str, Any]:
-    """Return the numbers of a case."""
-    adhesive = Adhesive(case)
-    separation = adhesive.path()
-    found = laws(adhesive, separation)
     return {
         **{name: [getattr(law, name) for law in found] for name in _NUMBERS},
         **{name: getattr(case.surface, name) for name in ("hurst", "bandwidth", "anisotropy")},

@@ -14,7 +14,7 @@ from click.testing import CliRunner
 import roughmdr as rm
 from roughmdr.cli import main
 from roughmdr.numerics.arguments import Floats
-from roughmdr.scene import read
+from roughmdr.scene import Scene, read
 from studies.comparison import FACTOR, bounds, draw_stated, in_cases, panels
 from studies.study import Figure, Study, table, without_limits
 from studies.trust.samples import CASES as SURFACES
@@ -60,9 +60,9 @@ def carry_out(case: Case, folder: Path) -> dict[str, Any]:
     at = result.isel(step=closest)
     found |= {name: float(at[name]) for name in ("contact_fraction", "separation", "force")}
     found |= {"model_error": float(at["model_error_curve"]), "pull_off": float(result.get("pull_off_force", math.nan))}
-    path = result["separation"].to_numpy()
-    found |= _truth(case, file, path[: closest + 1], float(path[-1]))
-    size = case.surface.size if case.surface else side(_ensemble(file))
+    path, scene = result["separation"].to_numpy(), read(file)
+    found |= _truth(case, scene, path[: closest + 1], float(path[-1]))
+    size = case.surface.size if case.surface else math.sqrt(scene.asperities.nominal_area or math.nan)
     radius = size * math.sqrt(float(at["contact_fraction"] / (math.pi * at["contact_count"])))
     return found | {"radius_points": radius / found["radius_points"], "printed": "\n".join(_told(done.stdout))}
 
@@ -77,17 +77,16 @@ def _told(printed: str) -> list[str]:
     return found
 
 
-def _truth(case: Case, file: Path, loading: Floats, end: float) -> dict[str, float]:
+def _truth(case: Case, scene: Scene, loading: Floats, end: float) -> dict[str, float]:
     """Return true forces [N], and the spacing of the grid [m] in place of the points of a radius."""
-    scene, separation = read(file), float(loading[-1])
-    modulus, work = scene.effective_modulus, scene.work
+    modulus, work, separation = scene.effective_modulus, scene.work, float(loading[-1])
     if case.surface is not None:
         several = range(1, MAPS + 1) if case.oracle == "maps" else (1,)
         forces = of_map(case.surface, several, modulus, separation)
         scatter = float(np.std(forces, ddof=1)) / math.sqrt(len(forces)) if len(forces) > 1 else 0.0
         spacing = case.surface.size / (case.surface.points * case.surface.refined)
         return {"true_force": float(np.mean(forces)), "scatter": scatter, "radius_points": spacing}
-    ensemble = _ensemble(file)
+    ensemble = rm.generate(scene.asperities, seed=scene.seed)  # with positions
     if case.oracle == "boundary elements":
         force = by_boundary_elements(ensemble, case.points, modulus, separation)
         return {"true_force": force, "scatter": 0.0, "radius_points": side(ensemble) / case.points}
@@ -96,12 +95,6 @@ def _truth(case: Case, file: Path, loading: Floats, end: float) -> dict[str, flo
         return {"true_force": force, "scatter": 0.0}
     longer = by_range_of_adhesion(ensemble, modulus, work, loading)
     return {"true_force": force + longer, "scatter": 0.0, "true_pull_off": pull_off}
-
-
-def _ensemble(file: Path) -> xr.Dataset:
-    """Return the asperities of the first realisation, with their positions."""
-    scene = read(file)
-    return rm.generate(scene.asperities, seed=scene.seed)
 
 
 def measure(quick: bool) -> xr.Dataset:
