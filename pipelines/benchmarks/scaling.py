@@ -12,6 +12,7 @@ import numpy as np
 import xarray as xr
 from oracles.plain_sums import Sums, with_brentq, with_numpy
 from scipy.optimize import brentq
+from studies.comparison import in_cases
 from studies.study import Figure, Study, blank, named, timed
 
 import roughmdr as rm
@@ -54,6 +55,7 @@ _SLOW = {("tabulated", "dugdale"): 0.001}
 """Share of the asperities that is measured; of all others with a range of adhesion a twentieth."""
 ASPERITIES = {False: 1_000_000, True: 20_000}
 TABOR = (0.1, 1.0, 10.0, 100.0)
+_RANGE = {"dugdale_state_time": ("time per asperity and step", "ns"), "dugdale_time": ("200 steps each way", "s")}
 _CLOSED = ("paraboloid", "cone", "flat_punch")  # shapes without a profile that a root finder is given
 _BRENTQ = 300, 200  # asperities, or contacts of one, that a root finder is given
 
@@ -90,16 +92,6 @@ def by_the_sum(ensemble: Ensemble, adhesion: Adhesion, repeats: int, rows: set[i
 
     visits()
     return timed(visits, repeats)
-
-
-def split_cost(ensemble: Ensemble, adhesion: Adhesion, repeats: int) -> tuple[float, float, tuple[int, float]]:
-    """Return the times [ns] of delta -> (P, a, k) and of preparing an asperity, and the cost of 200 steps each way.
-
-    The first two are told apart by paths of few steps and of many.
-    """
-    short, long = (by_the_sum(ensemble, adhesion, repeats, STATE, steps) for steps in (200, 2000))
-    state = (long[1] - short[1]) / (long[0] - short[0])
-    return 1e9 * state, 1e9 * (short[1] - state * short[0]) / ensemble.height.size, short
 
 
 def scalar_g(shape: Shape) -> Callable[[float], float]:
@@ -166,14 +158,13 @@ def of_range(tabor: float) -> Adhesion:
 
 
 def by_range(count: int, repeats: int) -> xr.Dataset:
-    """Measure paraboloids under adhesion of finite range, by their Tabor number."""
-    ensemble = ensemble_of(count)
-    found = [split_cost(ensemble, of_range(tabor), repeats) for tabor in TABOR]
-    variables = {
-        "dugdale_state_time": ("tabor", [state for state, *_ in found], named("time per asperity and step", "ns")),
-        "dugdale_time": ("tabor", [short[1] for *_, short in found], named("200 steps each way", "s")),
-    }
-    return xr.Dataset(variables, {"tabor": ("tabor", list(TABOR), named("Tabor number"))}, {"dugdale_count": count})
+    """Measure paraboloids under adhesion of finite range, by their Tabor number: one step more, and 200 each way."""
+    ensemble, found = ensemble_of(count), []
+    for tabor in TABOR:
+        short, long = (by_the_sum(ensemble, of_range(tabor), repeats, STATE, steps) for steps in (200, 2000))
+        found.append((1e9 * (long[1] - short[1]) / (long[0] - short[0]), short[1]))
+    numbers = ("tabor", list(TABOR), named("Tabor number"))
+    return xr.Dataset(in_cases(_RANGE, found, "tabor"), {"tabor": numbers}, {"dugdale_count": count})
 
 
 def by_law(count: int, repeats: int) -> xr.Dataset:

@@ -44,8 +44,11 @@ def refined(height: Floats, factor: int) -> Floats:
 
 def by_pairs(ensemble: xr.Dataset, modulus: float, work: float, closest: float, end: float) -> tuple[float, float]:
     """Return the force [N] of paraboloids at the closest separation, and the least one up to the end (NaN: none)."""
-    tops = _tops(ensemble, closest)
-    x, y, height, radius = (tops[name].to_numpy() for name in ("x", "y", "height", "radius"))
+    height, radius = (ensemble[name].to_numpy() for name in ("height", "radius"))
+    flanks = height[:, None] - 0.5 * distances(ensemble) ** 2 / radius[:, None]
+    high = height > closest - _LIFTED * (height.max() - closest)
+    may_touch = high & ~(flanks > height).any(axis=0)  # those below the flank of another never do
+    x, y, height, radius = (ensemble[name].to_numpy()[may_touch] for name in ("x", "y", "height", "radius"))
     green = periodic_green(x, y, side(ensemble), modulus)
     pressed = Paraboloids(height, radius, green, modulus, work)
     for h in np.linspace(height.max(), closest, _LOADING):
@@ -65,11 +68,3 @@ def by_range_of_adhesion(ensemble: xr.Dataset, modulus: float, work: float, path
         return float(law_of(ensemble, separation=path, **asked)["force"][-1])
 
     return force(adhesion="dugdale", range=ASSUMED_RANGE) - force()
-
-
-def _tops(ensemble: xr.Dataset, separation: float) -> xr.Dataset:
-    """Return the asperities that may touch, without those whose top lies below the flank of another."""
-    height = ensemble["height"].to_numpy()
-    flanks = height[:, None] - 0.5 * distances(ensemble) ** 2 / ensemble["radius"].to_numpy()[:, None]
-    high = height > separation - _LIFTED * (height.max() - separation)
-    return ensemble.isel(asperity=np.flatnonzero(high & ~(flanks > height).any(axis=0)))
