@@ -1,7 +1,7 @@
 """Rough costs of runs, by which they are split into tasks and the cheapest method for an asked error is chosen.
 
 Seconds on one core of a small server (``pipelines/study.py``: work_precision, scaling), right to a factor of about
-three. They are constants, never measured while a batch runs, so that every machine chooses alike.
+three. They are constants, never measured, so that every machine chooses alike.
 """
 
 from typing import NamedTuple
@@ -43,9 +43,9 @@ _ELASTIC, _JKR, _DUGDALE = (
     _Law(1.5e-2, 1e-4, 5e-2, 2e-4),
 )
 _PARABOLOIDS, _HEIGHTS_DEPEND = 0.3, 6.0  # factors on the seconds of a node
-_SOUGHT, _SOUGHT_PAIRS, _SOUGHT_ADHERING = 2.5, 17.0, 3.6
-"""How many times as long a path takes whose separations are sought: 2.3 to 2.8 (2000 and 20 000 paraboloids), 14 to 20
-(100 to 1600 in pairs, under a pressure), 3.6 (median of 150 ensembles of 2 to 8 adhesive pairs)."""
+_SOUGHT, _SOUGHT_PAIRS, _SOUGHT_ADHERING = 2.5, 4.0, 3.6
+"""How many times as long a path takes whose separations are sought: 2.3 to 2.8 (2000 and 20 000 paraboloids), 3.4 to
+4.7 (100 to 900 in pairs, under a pressure), 3.6 (median of 150 ensembles of 2 to 8 adhesive pairs)."""
 _JUMP, _JUMP_VISITS, _JUMP_VISITS_PROFILE = 3e-5, 4.0, 24.0
 """Seconds for each contact whose jump on a machine is located, and visits that it takes of each other contact: of
 paraboloids 1.6 to 5.4 (2000 to 7600 contacts), of spheres 23 to 27 (190 to 2700), on each leg."""
@@ -63,19 +63,17 @@ _NUMBER = 8  # bytes
 _ASPERITY = 110  # bytes of an asperity: of a paraboloid, drawn and summed with JKR, 86 to 105 were measured
 _PAIRED_ASPERITY = 2000  # bytes where they feel each other in pairs: a million took 2.0 GB
 _ADHERING_PAIR = 100  # bytes of each two asperities with adhesion: four matrices, and parts of them
+_MAP_POINT = 20  # bytes of a point of a map that is drawn: 18 to 36 with its summits, 30 to 60 with its hills
 _BRANCH, _STEP_IN_FILE = 36, 68  # bytes: the name of the branch of a step in memory; that and its separation on disk
 
 
 def seconds(cell: Cell, estimator: str) -> float:
-    """Return about how long one run takes [s], with what stages compute beside its law."""
-    laws = 1 + _LAWS_OF_DERIVATIVE * len(cell.scene.output.derivatives)
-    return laws * law_seconds(cell, estimator) + beside(cell).seconds
-
-
-def law_seconds(cell: Cell, estimator: str) -> float:
-    """Return about how long the law of one run takes [s], with the search for its separations and jumps."""
-    found = along_seconds(cell, estimator) * _search_factor(cell, estimator)
-    return found + _jump_seconds(cell) if locates_jumps(cell, estimator) else found
+    """Return about how long one run takes [s]: the search for its separations and jumps, and what stages compute beside
+    its law.
+    """
+    law = along_seconds(cell, estimator) * _search_factor(cell, estimator)
+    law += _jump_seconds(cell) if locates_jumps(cell, estimator) else 0.0
+    return (1 + _LAWS_OF_DERIVATIVE * len(cell.scene.output.derivatives)) * law + beside(cell).seconds
 
 
 def along_seconds(cell: Cell, estimator: str) -> float:
@@ -198,18 +196,15 @@ def result_bytes(plan: Plan, runs: int) -> int:
 
 def ensemble_bytes(plan: Plan) -> float:
     """Return the memory [byte] of the largest ensemble that is drawn, while its law is computed."""
-    drawn = [cell.scene for cell in plan.cells if cell.scene.estimators[0] != "expected"]
-    return max(
-        (scene.asperities.expected_count * _bytes_of_each(scene) for scene in drawn if scene.asperities.is_random),
-        default=0.0,
-    )
+    scenes = (cell.scene for cell in plan.cells if cell.scene.estimators[0] != "expected")
+    return max((_drawn_bytes(scene) for scene in scenes if scene.asperities.is_random), default=0.0)
 
 
-def _bytes_of_each(scene: Scene) -> float:
-    """Return the memory [byte] of an asperity."""
-    if not scene.needs_positions:
-        return _ASPERITY
-    return _PAIRED_ASPERITY + (_ADHERING_PAIR * scene.asperities.expected_count if scene.work > 0.0 else 0.0)
+def _drawn_bytes(scene: Scene) -> float:
+    """Return the memory [byte] of the asperities of a realisation, with their map."""
+    count = scene.asperities.expected_count
+    paired = _PAIRED_ASPERITY + (_ADHERING_PAIR * count if scene.work > 0.0 else 0.0)
+    return count * (paired if scene.needs_positions else _ASPERITY) + _MAP_POINT * scene.asperities.map_points
 
 
 def _value_bytes(plan: Plan, runs: int) -> int:

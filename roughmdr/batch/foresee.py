@@ -54,8 +54,11 @@ class Prospect(NamedTuple):
 
 
 def foresee_cells(plan: Plan) -> Prospect:
-    """Foresee some cells of a plan, evenly chosen, the first and the last among them."""
-    foreseen, failures = [], []
+    """Foresee some cells of a plan, evenly chosen, the first and the last among them.
+
+    RoughmdrError where none of these can be computed.
+    """
+    foreseen, failures = [], list[str]()
     for number in some_cells(plan):
         cell = plan.cells[number]
         separation, most = cell.path.separation, _MAX_PAIRED_STEPS if cell.scene.needs_positions else _MAX_STEPS
@@ -69,6 +72,8 @@ def foresee_cells(plan: Plan) -> Prospect:
             foreseen.append(foresee(cell.scene, path)._replace(cell=number))
         except RoughmdrError as error:
             failures.append(f"{plan.name_of(number, 0)}: {error}")
+    if not foreseen:
+        raise RoughmdrError(failures[0])
     coupled = max(
         math.inf
         if cell.scene.unlike

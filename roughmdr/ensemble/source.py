@@ -93,6 +93,11 @@ class Source(Section):
         return None
 
     @property
+    def map_points(self) -> int:
+        """The number of points of the map that each realisation draws; 0 where it draws none."""
+        return 0
+
+    @property
     def expected_count(self) -> float:
         """The mean number of asperities."""
         raise NotImplementedError

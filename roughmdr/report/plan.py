@@ -41,9 +41,8 @@ def describe_plan(plan: Plan, estimate: Estimate, prospect: Prospect, workers: i
         *_beside(plan, estimate),
         *motion_lines(plan.coordinates()),
     ]
-    failures = dict.fromkeys([*estimate.failures, *prospect.failures])
     map_lines = [text for text in plan.map_lines if text not in unlikely]
-    lines += [*under("map", map_lines), *under("warning", plan.warnings), *under("cannot run", failures)]
+    lines += [*under("map", map_lines), *under("warning", plan.warnings), *under("cannot run", prospect.failures)]
     return format_table([*lines, *under("left out", plan.left_out)])
 
 
@@ -131,7 +130,7 @@ def plan_table(plan: Plan, estimate: Estimate, prospect: Prospect, workers: int)
         "sample": _sample(plan, prospect) or None,
         "advice": advice_on(scene.toml, _resolution(prospect)) or None,
         "warnings": plan.warnings,
-        "failures": list(dict.fromkeys([*estimate.failures, *prospect.failures])),
+        "failures": list(prospect.failures),
         "left_out": list(plan.left_out),
     }
 

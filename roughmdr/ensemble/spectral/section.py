@@ -94,6 +94,10 @@ class SpectrumAsperities(Source):
         least = max(self.points, 2.0 * _MARGIN) * self.patch / shortest
         return 2 * next_fast_len(math.ceil(0.5 * least) + 1, real=True) if least < _LARGEST_MAP else math.ceil(least)
 
+    @property
+    def map_points(self) -> int:
+        return self._points**2
+
     @cached_property
     def _waves(self) -> Waves:
         height = 1.0 if self.rms_height is None else self.rms_height
