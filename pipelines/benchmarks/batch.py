@@ -16,8 +16,7 @@ from studies.study import Figure, Study, blank, named, table, timed
 from benchmarks import child
 from benchmarks.process import in_new_process
 from benchmarks.tasks import by_scheduler, by_workers
-from roughmdr.batch.known_moments import KnownMoments
-from roughmdr.batch.moments import Moments
+from roughmdr.batch.moments import KnownMoments, Moments
 from roughmdr.batch.plan import make_plan
 from roughmdr.batch.resume.store import locked_store
 from roughmdr.batch.rounds import Rounds

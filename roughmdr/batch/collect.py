@@ -5,8 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from roughmdr.batch.known_moments import MEAN, ROWS, KnownMoments
-from roughmdr.batch.moments import Moments, MomentTree
+from roughmdr.batch.moments import MEAN, ROWS, KnownMoments, Moments, MomentTree
 from roughmdr.batch.task_result import Columns, Row, TaskResult, merge, merge_rows, not_run
 from roughmdr.loading.pull_off import PullOff
 from roughmdr.numerics.arguments import Floats

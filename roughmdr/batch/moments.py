@@ -35,16 +35,9 @@ class Moments(NamedTuple):
         No square leaves the range of a float, and no difference does.
         """
         count = self.size + other.size
-        weight, other_weight = self.size / count, other.size / count
-        half = 0.5 * other.mean - 0.5 * self.mean
-        within = np.hypot(math.sqrt(weight) * self.spread, math.sqrt(other_weight) * other.spread)
-        return Moments(
-            count,
-            self.mean + (2.0 * other_weight) * half,
-            np.hypot(within, (2.0 * math.sqrt(weight * other_weight)) * half),
-            np.minimum(self.minimum, other.minimum),
-            np.maximum(self.maximum, other.maximum),
-        )
+        mean, spread = _merged(self[1:3], other[1:3], self.size / count, other.size / count)
+        extremes = np.minimum(self.minimum, other.minimum), np.maximum(self.maximum, other.maximum)
+        return Moments(count, mean, spread, *extremes)
 
     def select(self, index: Any) -> "Moments":
         """Return the moments of a part of the arrays."""
@@ -56,6 +49,46 @@ class Moments(NamedTuple):
         if self.size < 2:
             return np.full_like(self.mean, math.nan)
         return np.asarray(self.spread / math.sqrt(self.size - 1))
+
+
+ROWS = ("count", "mean", "spread", "minimum", "maximum")
+COUNT, MEAN, SPREAD, MINIMUM, MAXIMUM = range(len(ROWS))
+
+
+class KnownMoments(NamedTuple):
+    """Moments of numbers that not every realisation has, such as its pull-off force: NaN stands for none."""
+
+    size: int
+    """Number of realisations, with the number or without."""
+    table: Floats
+    """[row of ROWS, number], over the realisations that have it; NaN but for the count where none has."""
+
+    @classmethod
+    def of(cls, values: Floats) -> "KnownMoments":
+        """Return the moments of one realisation: [number]."""
+        spread = np.where(np.isnan(values), np.nan, 0.0)
+        return cls(1, np.array([np.where(np.isnan(values), 0.0, 1.0), values, spread, values, values]))
+
+    def merged(self, other: "KnownMoments") -> "KnownMoments":
+        """Return the moments of both, as ``Moments.merged`` does where every realisation counts."""
+        one, two = self.table, other.table
+        count = one[COUNT] + two[COUNT]
+        weights = (each[COUNT] / np.maximum(count, 1.0) for each in (one, two))
+        mean, spread = _merged((one[MEAN], one[SPREAD]), (two[MEAN], two[SPREAD]), *weights)
+        extremes = np.fmin(one[MINIMUM], two[MINIMUM]), np.fmax(one[MAXIMUM], two[MAXIMUM])
+        merged = np.array([count, mean, spread, *extremes])
+        merged = np.where(one[COUNT] == 0.0, two, np.where(two[COUNT] == 0.0, one, merged))
+        return KnownMoments(self.size + other.size, merged)
+
+
+def _merged(
+    one: tuple[Floats, ...], other: tuple[Floats, ...], weight: Floats | float, other_weight: Floats | float
+) -> tuple[Floats, Floats]:
+    """Return the mean and the spread of both from those of each and their shares of the number."""
+    (mean, spread), (other_mean, other_spread) = one, other
+    half = 0.5 * other_mean - 0.5 * mean
+    within = np.hypot(np.sqrt(weight) * spread, np.sqrt(other_weight) * other_spread)
+    return mean + (2.0 * other_weight) * half, np.hypot(within, (2.0 * np.sqrt(weight * other_weight)) * half)
 
 
 def dyadic_blocks(first: int, last: int) -> Iterator[tuple[int, int]]:

@@ -11,8 +11,7 @@ import numpy as np
 from roughmdr import errors
 from roughmdr.aggregate import LoadingPath, LoadSeparation, prepare
 from roughmdr.batch.costs import seconds
-from roughmdr.batch.known_moments import KnownMoments
-from roughmdr.batch.moments import Moments, MomentTree
+from roughmdr.batch.moments import KnownMoments, Moments, MomentTree
 from roughmdr.batch.plan import Cell, Plan
 from roughmdr.batch.realization import simulate_realization
 from roughmdr.batch.resume.keys import check_versions, versions

@@ -6,8 +6,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from roughmdr.batch.collect import CollectedResults
-from roughmdr.batch.known_moments import COUNT, MAXIMUM, MEAN, MINIMUM, SPREAD
-from roughmdr.batch.moments import mean_and_error
+from roughmdr.batch.moments import COUNT, MAXIMUM, MEAN, MINIMUM, SPREAD, mean_and_error
 from roughmdr.batch.plan import Plan
 from roughmdr.batch.rounds import CellMethod
 from roughmdr.loading.pull_off import unloadings

@@ -12,8 +12,7 @@ from hypothesis import strategies as st
 from scenes import ASPERITIES, CONDUCTION, scene
 
 import roughmdr as rm
-from roughmdr.batch.known_moments import KnownMoments
-from roughmdr.batch.moments import MomentTree
+from roughmdr.batch.moments import KnownMoments, MomentTree
 from roughmdr.report.summary import describe_result
 from roughmdr.result.view import ResultView
 from roughmdr.variables import CONDUCTANCES, CURVE_VARIABLES

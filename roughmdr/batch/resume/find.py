@@ -5,8 +5,8 @@ from pathlib import Path
 
 import numpy as np
 
-from roughmdr.batch.known_moments import ROWS as KNOWN_ROWS
-from roughmdr.batch.known_moments import KnownMoments
+from roughmdr.batch.moments import ROWS as KNOWN_ROWS
+from roughmdr.batch.moments import KnownMoments
 from roughmdr.batch.plan import Plan
 from roughmdr.batch.resume.keys import changes, versions
 from roughmdr.batch.resume.reusable import ReusableRows
