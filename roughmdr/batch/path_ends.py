@@ -1,27 +1,46 @@
-"""The steps of a scene's path, with the ends that follow from its asperities and its material."""
+"""The steps of a scene's path, with the ends that follow from its asperities and its material: start = "clear", and
+stop = { contact_fraction = ... } or { pressure = ... }.
 
-from typing import NamedTuple
+At "clear" no asperity of any realisation touches, or attracts, the flat. Of asperities that are not drawn it is exact.
+Of others it lies above the height that is exceeded, with a chance of 1e-3, by any asperity of ten thousand realisations
+(or of as many as there can be, if these are more), by the depth of detachment that is the largest where every shape
+parameter is between quantiles as extreme. So it depends neither on what is drawn nor on how many of these realisations
+there are.
 
-from roughmdr.errors import Fault, SceneError
+A target is the largest separation at which loading reaches it. It is sought in the expected law where the asperities
+have one, else in a stratified realisation; where nothing is drawn, in the asperities themselves. Asperities that feel
+each other do so in pairs, as precisely as they are asked to.
+"""
+
+import math
+
+import numpy as np
+
+from roughmdr.aggregate import LoadingPath, Problem
+from roughmdr.batch.realization import simulate_ensemble, simulate_realization
+from roughmdr.errors import Fault, RoughmdrError, SceneError
+from roughmdr.loading.first_reached import Law, OutOfReach, first_reached
+from roughmdr.model_error.refusal import Givens, likely_cause
 from roughmdr.numerics.arguments import Floats
 from roughmdr.scene import Scene
 from roughmdr.scene.identity import Digests
-from roughmdr.scene.separation import CLEAR
+from roughmdr.scene.separation import CLEAR, Target
 from roughmdr.schema.units import format_quantity
 
-
-class PathEnds(NamedTuple):
-    """Ends of a path [m]; None where the scene gives them as separations."""
-
-    clear: float | None = None
-    reached: float | None = None
+_RTOL = 1e-14  # error of the stop, over its distance from the start
+_MOST_OF_PATCH = 0.3  # area of a contact, over the nominal one, that makes it none of many
+_FIRST = 1e-6  # first distance, over the width of an asperity, where all summits are at the start
+_CHANCE = 1e-3  # probability that any asperity of all realisations is higher
+_REALIZATIONS = 10_000  # least number of realisations allowed for, so that a batch can be extended
+_USUAL_CHANCE = 0.1  # or that of the highest asperity of a realisation, for what is usual
+_FAR = 1e3  # distance of the start, over the usual one, at which nearly all steps would have no contact
 
 
 class PathFinder:
     """Finds the steps of the cells of a sweep; the ends that follow from equal scenes are found once."""
 
     def __init__(self) -> None:
-        self._digests, self._found = Digests(), dict[str, PathEnds]()
+        self._digests, self._found = Digests(), dict[str, tuple[float | None, float | None]]()
 
     def values(self, cell: Scene) -> Floats:
         """Return the controlled quantity at each step in SI; SceneError where the path cannot be laid out."""
@@ -30,30 +49,101 @@ class PathFinder:
             return path.whole(path.values(sigma))
         key = self._digests.of(cell)
         if key not in self._found:
-            self._found[key] = _find(cell, *path.given(sigma))
+            self._found[key] = _found_ends(cell, *path.given(sigma))
         return path.whole(path.values(sigma, *self._found[key]))
 
     @property
     def notes(self) -> list[str]:
         """Lines that say which separations the ends came to, the range of these in a sweep."""
-        names = {"clear": f"start {CLEAR!r}", "reached": "stop where the target is reached"}
-        found = {name: [getattr(ends, name) for ends in self._found.values()] for name in names}
-        known = {name: [value for value in values if value is not None] for name, values in found.items()}
-        lines = {name: (min(values), max(values)) for name, values in known.items() if values}
-        return [f"{names[name]}: {format_quantity(low, 'm', to=high)}" for name, (low, high) in lines.items()]
+        names = f"start {CLEAR!r}", "stop where the target is reached"
+        found = ([end for end in ends if end is not None] for ends in zip(*self._found.values(), strict=True))
+        pairs = [(name, ends) for name, ends in zip(names, found, strict=False) if ends]
+        return [f"{name}: {format_quantity(min(ends), 'm', to=max(ends))}" for name, ends in pairs]
 
 
-def _find(cell: Scene, start: float | None, stop: float | None) -> PathEnds:
-    """Return the ends that are not given as separations [m]."""
-    from roughmdr.batch.found_ends import clear_start, target_stop
-
+def _found_ends(cell: Scene, start: float | None, stop: float | None) -> tuple[float | None, float | None]:
+    """Return the start and the stop that follow from a scene [m]; None for those that are given as separations."""
     clear = clear_start(cell) if start is None else None
     begin = clear if start is None else start
     assert begin is not None
-    if stop is not None:
-        if not stop < begin:
-            message = f"must be below {format_quantity(begin, 'm')}, where a path that starts {CLEAR} begins"
-            raise SceneError.of([Fault(f"path.{cell.path.control}.stop", format_quantity(stop, "m"), message)])
-        return PathEnds(clear)
-    assert cell.path.target is not None
-    return PathEnds(clear, target_stop(cell, cell.path.target, begin))
+    if stop is None:
+        assert cell.path.target is not None
+        return clear, target_stop(cell, cell.path.target, begin)
+    if not stop < begin:
+        message = f"must be below {format_quantity(begin, 'm')}, where a path that starts {CLEAR} begins"
+        raise SceneError.of([Fault(f"path.{cell.path.control}.stop", format_quantity(stop, "m"), message)])
+    return clear, None
+
+
+def target_stop(scene: Scene, target: Target, start: float) -> float:
+    """Return the stop [m] of a scene without a sweep, whose path begins at ``start`` [m].
+
+    SceneError where the target cannot be reached.
+    """
+    if scene.asperities.nominal_area is None:
+        raise _fault(target, "needs a nominal area, which these asperities do not have")
+    middle = scene.asperities.extremes(0.5)
+    distances = (start - float(np.median(middle.height)), _FIRST * float(middle.columns.width.max()))
+    scene, pairwise = scene.without_grid, scene.interaction if scene.needs_positions else None
+    rtol = _RTOL if pairwise is None else pairwise.error
+    try:
+        law = _law(scene, [target.variable], start)
+        stop = first_reached(law, target.value, start, max(distances), rtol, target.variable)
+        at_stop = (_law(scene, [name], start)(np.array([stop]))[0] for name in ("contact_fraction", "contact_count"))
+        fraction, contacts = map(float, at_stop)
+        if fraction > _MOST_OF_PATCH * contacts:
+            givens = Givens(scene.effective_modulus, scene.work, scene.asperities.sigma, 1.0, 0.0)
+            reason = f"is reached by contacts of {fraction / contacts:.2g} times the nominal area each"
+            raise _fault(target, f"{reason}: {likely_cause(stop, givens)}")
+        return stop
+    except SceneError:
+        raise
+    except OutOfReach as error:
+        raise _fault(target, str(error)) from error
+    except RoughmdrError as error:
+        raise _fault(target, f"cannot be looked for: {error}") from error
+
+
+def _law(scene: Scene, names: list[str], start: float) -> Law:
+    """Return the function: falling separations [m] -> the variable there, in loading from ``start`` [m]."""
+    source, variable = scene.asperities, names[0]
+
+    def path(separations: Floats) -> LoadingPath:
+        return LoadingPath.along(np.append(start, separations), unload=False, adhesive=scene.work > 0.0)
+
+    if source.is_random and not scene.reason_against("expected"):
+        return lambda h: simulate_realization(scene, path(h), 0, names, "expected").variables[variable][1:]
+    stratified = source.is_random and not source.reason_against("stratified")
+    ensemble = source.ensemble(scene.seed, 0, stratified=stratified, with_positions=scene.needs_positions)
+    return lambda h: simulate_ensemble(scene, path(h), ensemble, names).variables[variable][1:]
+
+
+def _fault(target: Target, message: str) -> SceneError:
+    return SceneError.of([Fault(f"path.separation.stop.{target.variable}", f"{target.value:g}", message)])
+
+
+def clear_start(scene: Scene) -> float:
+    """Return the start [m] of a scene without a sweep; SceneError where there is none that makes sense."""
+    most = scene.batch.realizations if scene.accuracy is None else scene.accuracy.max_realizations
+    count = max(scene.asperities.expected_count, 1.0)
+    start = _exceeded(scene, -math.expm1(math.log1p(-_CHANCE) / (count * max(_REALIZATIONS, most))))
+    if not math.isfinite(start):
+        raise _no_start("cannot be found: no float holds the contact of asperities as extreme as there may be")
+    start += sum((stage.clear_above(scene) for stage in scene.stages), start=0.0)
+    if scene.asperities.is_random:
+        usual = _exceeded(scene, min(_USUAL_CHANCE, 1.0 / count))
+        middle = float(scene.asperities.extremes(0.5).height.max())
+        if start - middle > _FAR * (usual - middle):
+            far = "some may be very high, or detach very late"
+            raise _no_start(f"would be {start:.3g} m, where most realisations need {usual:.3g} m: {far}")
+    return start
+
+
+def _exceeded(scene: Scene, chance: float) -> float:
+    """Return the separation [m] that is clear of all asperities but those more extreme than this chance."""
+    return Problem(scene.asperities.extremes(chance), scene.effective_modulus, scene.adhesion_model).clear
+
+
+def _no_start(message: str) -> SceneError:
+    hint = 'give it as a separation, as start = "4 sigma"'
+    return SceneError.of([Fault("path.separation.start", f'"{CLEAR}"', f"{message}; {hint}")])
