@@ -5,8 +5,7 @@ range, and no adhesion that of either: of models that the data do not tell apart
 """
 
 import math
-from collections.abc import Callable, Mapping
-from types import MappingProxyType
+from collections.abc import Callable
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -16,7 +15,7 @@ from roughmdr.fitting.measured import MeasuredCurve
 from roughmdr.fitting.model import Model
 from roughmdr.fitting.parameters import Known, free_parameters
 from roughmdr.fitting.residuals import relative_rms
-from roughmdr.fitting.search import Found, search
+from roughmdr.fitting.search import Fitted, Found, fitted
 from roughmdr.fitting.uncertainty import noise_correlation
 from roughmdr.numerics.arguments import Floats
 from roughmdr.scene import Scene, read
@@ -36,7 +35,7 @@ class Candidate(NamedTuple):
     """An adhesion model that is fitted, or the reason why not."""
 
     name: str
-    fit: "Choice | None"
+    fit: Fitted | None
     reason: str = ""
 
     @property
@@ -65,18 +64,7 @@ class Candidate(NamedTuple):
         return effective * (mean if stated else math.log(mean)) + 2.0 * parameters * effective / spare
 
 
-class Choice(NamedTuple):
-    """A model with its parameters of least squares, and how it compares with others."""
-
-    model: Model
-    found: Found
-    arrays: Mapping[str, Array] = MappingProxyType({})
-    """Over ``model``, in the order of ``model_name``; none where nothing is compared."""
-    doubts: tuple[str, ...] = ()
-    """Which models the data do not tell from it, in words."""
-
-
-def best_model(scene: Scene, curve: MeasuredCurve, free: list[str], known: Known = Known()) -> Choice:
+def best_model(scene: Scene, curve: MeasuredCurve, free: list[str], known: Known = Known()) -> Fitted:
     """Return the best adhesion model, compared with the others.
 
     Points are as many as are independent by the residuals of the closest fit. SceneError where the scene has no work
@@ -99,8 +87,8 @@ def best_model(scene: Scene, curve: MeasuredCurve, free: list[str], known: Known
     near = jkr.fit.model.scene(jkr.fit.found.x) if jkr.fit else scene
     candidates = [without, jkr, _fitted("dugdale", lambda: _dugdale(scene, near, sticky, model_of))]
     fits = [each.fit for each in candidates if each.fit]
-    fitted = np.array([each.free > 0 for each in candidates])
-    if not fitted.any():
+    has_free = np.array([each.free > 0 for each in candidates])
+    if not has_free.any():
         reasons = "; ".join(f"{each.name}: {each.reason}" for each in candidates if each.reason)
         raise SceneError(f"scene: no adhesion model: {reasons}")
     points = curve.load.size
@@ -108,7 +96,7 @@ def best_model(scene: Scene, curve: MeasuredCurve, free: list[str], known: Known
     left = np.linalg.qr(closest.slopes[:points])[0]
     effective = noise_correlation(curve, left, closest.residuals).effective(points)
     aicc = np.array([each.aicc(points, effective, stated=curve.error is not None) for each in candidates])
-    if not np.isfinite(least := aicc[fitted].min()):
+    if not np.isfinite(least := aicc[has_free].min()):
         raise SceneError(f"{curve.origin}: has {effective:.3g} independent points, too few to tell models apart")
     alike = [each for each, number in zip(candidates, aicc, strict=True) if number <= least + _NOT_TOLD]
     best = min(alike, key=lambda each: (each.free == 0, each.free, each.squares))
@@ -120,7 +108,7 @@ def best_model(scene: Scene, curve: MeasuredCurve, free: list[str], known: Known
     model = best.fit.model
     model.seconds = sum(each.model.seconds for each in fits)
     model.evaluations = sum(each.model.evaluations for each in fits)
-    return Choice(model, best.fit.found, _table(candidates, aicc), (doubt,) if others else ())
+    return Fitted(model, best.fit.found, _table(candidates, aicc), (doubt,) if others else ())
 
 
 def _table(candidates: list[Candidate], aicc: Floats) -> dict[str, Array]:
@@ -151,7 +139,7 @@ def _with(scene: Scene, adhesion: dict[str, Any]) -> Scene:
 def _fitted(name: str, made: Callable[[], Model]) -> Candidate:
     try:
         model = made()
-        return Candidate(name, Choice(model, search(model) if model.parameters else _as_it_is(model)))
+        return Candidate(name, fitted(model) if model.parameters else Fitted(model, _as_it_is(model)))
     except RoughmdrError as error:
         return Candidate(name, None, str(error))
 

@@ -12,12 +12,11 @@ import numpy as np
 
 from roughmdr.errors import OutOfRange, RoughmdrError, StoreError
 from roughmdr.fitting.columns import Columns, read_columns
-from roughmdr.fitting.compare import Choice
-from roughmdr.fitting.joint import Searched, agree
+from roughmdr.fitting.joint import agree
 from roughmdr.fitting.measured import MeasuredCurve, read_measured
 from roughmdr.fitting.model import Model
 from roughmdr.fitting.result import assemble
-from roughmdr.fitting.search import search
+from roughmdr.fitting.search import Fitted, fitted
 from roughmdr.fitting.uncertainty import uncertainty
 from roughmdr.numerics.arguments import Floats
 from roughmdr.runner.local import over_processes
@@ -88,23 +87,10 @@ def first_of(curves: Curves, parameters: int) -> MeasuredCurve:
     return read_measured(next(iter(curves.values())), parameters)
 
 
-def fit_one(model: Model, command: str) -> Labelled:
-    """Return the fit of one curve; RoughmdrError where there is none."""
-    return assembled(Choice(model, search(model)), command)
-
-
-def assembled(choice: Choice, command: str) -> Labelled:
+def assembled(command: str, fit: Fitted) -> Labelled:
     """Return the result of a search with its uncertainty."""
-    started, known = time.perf_counter(), uncertainty(choice.model, choice.found)
-    return assemble(choice, known, choice.model.seconds + time.perf_counter() - started, command)
-
-
-def _searched(model: Model) -> Searched:
-    return Searched(model, search(model))
-
-
-def _assembled(command: str, each: Searched) -> Labelled:
-    return assembled(Choice(*each), command)
+    started, known = time.perf_counter(), uncertainty(fit.model, fit.found)
+    return assemble(fit, known, fit.model.seconds + time.perf_counter() - started, command)
 
 
 def fit_each(curves: Curves, first: Model, command: str, *, shared: list[str], workers: int, quiet: bool) -> Labelled:
@@ -128,25 +114,22 @@ def fit_each(curves: Curves, first: Model, command: str, *, shared: list[str], w
         found = over(partial(_read_and_searched, first), dict(enumerate(curves.values())))
         if shared:
             alone = over(_covariance, found)
-            found = (
-                agree({i: found[i] for i in alone}, alone, shared, partial(over, _searched), list(curves))
-                if alone
-                else {}
-            )
-        fits = over(partial(_assembled, command), found)
+            found = {i: found[i] for i in alone}
+            found = agree(found, alone, shared, partial(over, fitted), list(curves)) if alone else {}
+        fits = over(partial(assembled, command), found)
     return _together(list(curves), fits, failures, shared, first.start.toml)
 
 
-def _read_and_searched(first: Model, measured: Any) -> Searched:
+def _read_and_searched(first: Model, measured: Any) -> Fitted:
     """Return the parameters of a measurement that is like the first one; RoughmdrError where there are none."""
     curve = read_measured(measured, len(first.parameters))
     if (curve.control, curve.quantity) != (first.curve.control, first.curve.quantity):
         raise StoreError(f"{curve.origin}: must have {first.curve.control} and {first.curve.quantity}, as the first")
-    return _searched(first.along(curve))
+    return fitted(first.along(curve))
 
 
-def _covariance(each: Searched) -> Floats:
-    return uncertainty(*each).covariance
+def _covariance(fit: Fitted) -> Floats:
+    return uncertainty(fit.model, fit.found).covariance
 
 
 def _tried(function: Callable[[Any], Any], item: Any) -> Any:

@@ -8,10 +8,11 @@ from typing import TYPE_CHECKING, Any
 
 from roughmdr.errors import SceneError, StoreError, warn_limits
 from roughmdr.fitting.compare import RANGES, best_model
-from roughmdr.fitting.curves import assembled, first_of, fit_each, fit_one, taken_apart
+from roughmdr.fitting.curves import assembled, first_of, fit_each, taken_apart
 from roughmdr.fitting.fitted_scene import scene_to_fit
 from roughmdr.fitting.model import Model
 from roughmdr.fitting.parameters import Known
+from roughmdr.fitting.search import fitted
 from roughmdr.fitting.stored import read_fit
 from roughmdr.fitting.words import curve_names, parameter_keys
 from roughmdr.runner.backend import Backend
@@ -162,12 +163,12 @@ def fit_labelled(
             check_same_kind(out, FIT)
             _check_nothing_lost(out, [*free, *curves, *(RANGES if auto else ())])
     if auto:
-        result = assembled(best_model(validated, curve, free, known), command)
+        result = assembled(command, best_model(validated, curve, free, known))
     elif curves:
         model, workers, quiet = Model(validated, curve, free, known), options.workers, options.quiet
         result = fit_each(curves, model, command, shared=shared, workers=workers, quiet=quiet)
     else:
-        result = fit_one(Model(validated, curve, free, known), command)
+        result = assembled(command, fitted(Model(validated, curve, free, known)))
     if out is not None:
         write_netcdf(result, out)
     return result

@@ -7,14 +7,13 @@ that one finds with the prior are those of the joint fit.
 """
 
 from collections.abc import Callable
-from typing import NamedTuple
 
 import numpy as np
 
 from roughmdr.errors import OutOfRange
 from roughmdr.fitting.model import Model
 from roughmdr.fitting.parameters import AT_BOUND
-from roughmdr.fitting.search import Found
+from roughmdr.fitting.search import Fitted, Found
 from roughmdr.numerics.arguments import Floats
 
 _ROUNDS = 30  # most rounds of searches
@@ -24,48 +23,25 @@ _STEADY = 0.05  # least share of what a curve tells anew that is taken: rounds t
 _LEAST = 1e-14  # least information along a combination over the largest: less tells nothing
 
 
-class Searched(NamedTuple):
-    """A curve, and its parameters of least squares."""
-
-    model: Model
-    found: Found
-
-    def scales(self, keys: list[str]) -> tuple[list[int], Floats]:
-        """Return where shared parameters stand, and the scale of each."""
-        at = [i for i, parameter in enumerate(self.model.parameters) if parameter.key in keys]
-        return at, np.array([self.model.parameters[i].scale or 1.0 for i in at])
-
-    def told(self, at: list[int], scale: Floats) -> tuple[Floats, ...]:
-        """Return the information on shared parameters, and that times their values."""
-        rows = self.found.deviations.size - self.model.told[1].size
-        slopes, deviations = (each[:rows] / self.model.noise for each in (self.found.slopes, self.found.deviations))
-        (low, high), x = self.model.bounds, self.found.x
-        held = np.minimum(x - low, high - x) < AT_BOUND  # makes up for nothing
-        held[at] = True
-        own = slopes[:, ~held]
-        rest = (slopes[:, at] - own @ (np.linalg.pinv(own) @ slopes[:, at])) / scale
-        return rest.T @ rest, rest.T @ (rest @ (scale * self.found.x[at]) - deviations)
-
-
 def agree(
-    searched: dict[int, Searched],
+    searched: dict[int, Fitted],
     alone: dict[int, Floats],
     keys: list[str],
-    search_again: Callable[[dict[int, Model]], dict[int, Searched]],
+    search_again: Callable[[dict[int, Model]], dict[int, Fitted]],
     names: list[str],
-) -> dict[int, Searched]:
+) -> dict[int, Fitted]:
     """Return the searches with one value of the shared parameters; OutOfRange where they come to none.
 
     ``alone`` are the covariances of the parameters of each curve without the others.
     """
-    unit = next(iter(searched.values())).scales(keys)[1]
-    for model, found in searched.values():
+    unit = _scales(next(iter(searched.values())).model, keys)[1]
+    for model, found, *_ in searched.values():
         if model.noise in (0.0, 1.0):  # not found yet
             model.assume_noise_of(found.deviations, found.slopes)
     taken, share, last = dict[int, tuple[Floats, ...]](), 1.0, np.inf
     for number in range(_ROUNDS + 1):
-        places = {i: (at, scale / unit) for i, each in searched.items() for at, scale in [each.scales(keys)]}
-        told = {i: each.told(*places[i]) for i, each in searched.items()}
+        places = {i: (at, scale / unit) for i, each in searched.items() for at, scale in [_scales(each.model, keys)]}
+        told = {i: _told(each.model, each.found, *places[i]) for i, each in searched.items()}
         for i, (at, scale) in places.items():
             told[i] += (told[i][0] @ (np.outer(scale, scale) * alone[i][np.ix_(at, at)]) @ told[i][0],)
         every = [np.array(each) for each in zip(*told.values(), strict=True)]
@@ -92,6 +68,23 @@ def agree(
         f"shared: {', '.join(keys)}: the curves come to no common value; {name} is farthest off, by about {size:.2g} "
         "standard errors: leave it out, or share less"
     )
+
+
+def _scales(model: Model, keys: list[str]) -> tuple[list[int], Floats]:
+    """Return where shared parameters stand, and the scale of each."""
+    at = [i for i, parameter in enumerate(model.parameters) if parameter.key in keys]
+    return at, np.array([model.parameters[i].scale or 1.0 for i in at])
+
+
+def _told(model: Model, found: Found, at: list[int], scale: Floats) -> tuple[Floats, ...]:
+    """Return the information on shared parameters, and that times their values."""
+    rows = found.deviations.size - model.told[1].size
+    slopes, deviations = (each[:rows] / model.noise for each in (found.slopes, found.deviations))
+    held = np.minimum(found.x - model.bounds[0], model.bounds[1] - found.x) < AT_BOUND  # makes up for nothing
+    held[at] = True
+    own = slopes[:, ~held]
+    rest = (slopes[:, at] - own @ (np.linalg.pinv(own) @ slopes[:, at])) / scale
+    return rest.T @ rest, rest.T @ (rest @ (scale * found.x[at]) - deviations)
 
 
 def _as_measured(information: Floats, weighted: Floats, shaken: Floats) -> tuple[Floats, Floats, Floats]:

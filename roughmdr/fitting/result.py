@@ -2,12 +2,11 @@
 
 import numpy as np
 
-from roughmdr.fitting.compare import Choice
 from roughmdr.fitting.doubts import doubts
 from roughmdr.fitting.model import Model
 from roughmdr.fitting.parameters import Parameter
 from roughmdr.fitting.residuals import relative_rms
-from roughmdr.fitting.search import Found
+from roughmdr.fitting.search import Fitted, Found
 from roughmdr.fitting.uncertainty import Uncertainty
 from roughmdr.loading.path import labelled_branches
 from roughmdr.result.trust import trust_lines
@@ -25,9 +24,9 @@ _CONSTANT = "spring constant that the file of the curve tells"
 _CONTROLS = {"separation": "separation", "remote": "position of the far end of the spring"}
 
 
-def assemble(choice: Choice, known: Uncertainty, seconds: float, command: str) -> Labelled:
+def assemble(fitted: Fitted, known: Uncertainty, seconds: float, command: str) -> Labelled:
     """Return the result of a fit, as it is stored."""
-    model, found, compared, _ = choice
+    model, found, compared, undecided = fitted
     law, scene, curve = model.law(found.x), model.fitted(found.x), model.curve
     variables: dict[str, Array] = {}
     for i, parameter in enumerate(model.parameters):
@@ -72,7 +71,7 @@ def assemble(choice: Choice, known: Uncertainty, seconds: float, command: str) -
         "parameter_2_name": Array(("parameter_2",), keys, {"long_name": "key of the parameter in the scene"}),
         **{name: each for name, each in compared.items() if "units" not in each.attrs},
     }
-    warnings = [*choice.doubts, *doubts(model, found, known), *law.warnings]
+    warnings = [*undecided, *doubts(model, found, known), *law.warnings]
     interaction = None if scene.interaction is None else scene.interaction.model
     attrs = {
         **provenance(scene.title, command),

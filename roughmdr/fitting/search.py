@@ -1,7 +1,9 @@
 """The search for the parameters of least squares: from the start of the scene, and if need be from others."""
 
 import time
+from collections.abc import Mapping
 from functools import partial
+from types import MappingProxyType
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -11,6 +13,7 @@ from roughmdr.fitting.model import Model
 from roughmdr.fitting.residuals import POOR, is_systematic, relative_rms
 from roughmdr.fitting.slopes import slopes_of
 from roughmdr.numerics.arguments import Floats
+from roughmdr.storage.labelled import Array
 
 if TYPE_CHECKING:
     from scipy.optimize import OptimizeResult
@@ -34,6 +37,22 @@ class Found(NamedTuple):
     def residuals(self) -> Floats:
         """The deviations from the measured points alone."""
         return self.deviations[: self.points]
+
+
+class Fitted(NamedTuple):
+    """A model with its parameters of least squares, and how it compares with others."""
+
+    model: Model
+    found: Found
+    compared: Mapping[str, Array] = MappingProxyType({})
+    """Arrays over ``model``, in the order of ``model_name``; none where nothing is compared."""
+    doubts: tuple[str, ...] = ()
+    """Which models the data do not tell from it, in words."""
+
+
+def fitted(model: Model) -> Fitted:
+    """Return a model with its parameters of least squares; RoughmdrError where no start has a law."""
+    return Fitted(model, search(model))
 
 
 def search(model: Model) -> Found:
