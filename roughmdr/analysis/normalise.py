@@ -6,6 +6,7 @@ separation d sigma, where phi is the density of the heights over sigma.
 """
 
 import math
+from operator import attrgetter
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -74,7 +75,8 @@ def normalise(dataset: "xr.Dataset", theory: str) -> "xr.Dataset":
     result = result_of(dataset)
     if theory != "gw":
         raise StoreError(f"theory is {short_repr(theory)}; it must be 'gw', Greenwood and Williamson")
-    numbers = [of_cells(dataset, part, "normalise") for part in (_count, _modulus, _radius, _sigma, _area)]
+    parts = _count, attrgetter("effective_modulus"), _radius, _sigma, _area
+    numbers = [of_cells(dataset, part, "normalise") for part in parts]
     control = result.control
     names = [*dataset.data_vars, *([control] if control in _SCALES else [])]
     found: dict[str, xr.DataArray] = {}
@@ -115,10 +117,6 @@ def _checked(scene: Scene) -> Scene:
 def _count(scene: Scene) -> float:
     section = _checked(scene).asperities
     return section.expected_count if section.is_random else float(section.ensemble(scene.seed, 0).height.size)
-
-
-def _modulus(scene: Scene) -> float:
-    return scene.effective_modulus
 
 
 def _radius(scene: Scene) -> float:

@@ -8,7 +8,6 @@ from roughmdr.analysis.apply import over
 from roughmdr.batch.moments import mean_and_error
 from roughmdr.errors import StoreError
 from roughmdr.model_error.at_force import pull_off_error
-from roughmdr.numerics.arguments import Floats
 from roughmdr.result.curves import result_of
 from roughmdr.variables import ADHESION_CODES
 
@@ -61,7 +60,7 @@ def _mean_and_error(dataset: "xr.Dataset", name: str) -> "tuple[xr.DataArray, xr
     each = dataset[name]
     if "realization" not in each.dims:
         return each, xr.full_like(each, np.nan)
-    mean, error = over("realization", _over_realizations, each, parts=2)
+    mean, error = over("realization", lambda values: mean_and_error(values, np.isfinite(values)), each, parts=2)
     attrs = each.attrs | {"long_name": f"mean of the {each.attrs['long_name']}"}
     return mean.assign_attrs(attrs), error
 
@@ -83,7 +82,3 @@ def _model_error(dataset: "xr.Dataset", force: "xr.DataArray", fraction: "xr.Dat
     about = "estimated error of the pull-off force by the assumptions of the model"
     found: xr.DataArray = (relative * abs(force)).assign_attrs(units="N", long_name=about)
     return found
-
-
-def _over_realizations(values: Floats) -> tuple[Floats, Floats]:
-    return mean_and_error(values, np.isfinite(values))

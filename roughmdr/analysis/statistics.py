@@ -1,6 +1,5 @@
 """The statistics over the realisations of a result, as a run with keep = "statistics" stores them."""
 
-import math
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
@@ -9,7 +8,7 @@ import tomli_w
 from numpy.typing import NDArray
 
 from roughmdr.analysis.apply import in_one_chunk, over
-from roughmdr.batch.moments import moments_of
+from roughmdr.batch.moments import statistics_of
 from roughmdr.errors import StoreError
 from roughmdr.loading.path import LoadingPath
 from roughmdr.model_error.at_given import FORCES
@@ -127,7 +126,7 @@ def _statistics(dataset: "xr.Dataset", name: str, counted: "xr.DataArray") -> "d
     array = dataset[name]
     if array.chunks is not None and "step" in array.dims:
         array = array.chunk({"realization": -1, "step": "auto"})
-    found = over("realization", _moments, array, counted, parts=len(STATISTICS))
+    found = over("realization", _counted, array, counted, parts=len(STATISTICS))
     parts = dict(zip(STATISTICS, found, strict=True))
     the = "the " if name in PULL_OFF else ""
     attrs = {
@@ -142,23 +141,9 @@ def _statistics(dataset: "xr.Dataset", name: str, counted: "xr.DataArray") -> "d
     return {f"{name}_{statistic}": part.assign_attrs(attrs[statistic]) for statistic, part in parts.items()}
 
 
-def _moments(values: Floats, counted: NDArray[np.bool_]) -> tuple[Floats, ...]:
+def _counted(values: Floats, counted: NDArray[np.bool_]) -> tuple[Floats, ...]:
     """Return the statistics of those values [..., realization] that are counted in each cell."""
-    shape = values.shape[:-1]
-    cells = np.broadcast_to(counted, values.shape)
-    if cells.all():
-        return _four(np.moveaxis(values, -1, 0))
-    found = tuple(np.full(shape, math.nan) for _ in STATISTICS)
-    for cell in np.ndindex(shape):
-        if cells[cell].any():
-            for part, value in zip(found, _four(values[cell][cells[cell]]), strict=True):
-                part[cell] = value
-    return found
-
-
-def _four(values: Floats) -> tuple[Floats, ...]:
-    moments = moments_of(values)
-    return moments.mean, moments.standard_error, moments.minimum, moments.maximum
+    return statistics_of(values, np.broadcast_to(counted, values.shape))
 
 
 def _has_variance(dataset: "xr.Dataset") -> "xr.DataArray | None":

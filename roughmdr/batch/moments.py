@@ -121,17 +121,26 @@ def mean_and_error(values: Floats, done: NDArray[np.bool_]) -> tuple[Floats, Flo
     ``values`` lie over the same and, where there are more dimensions, over those too. NaN for the error of a single
     realisation, and for both where none is done.
     """
+    mean, error, *_ = statistics_of(values, done)
+    return mean, error
+
+
+def statistics_of(values: Floats, done: NDArray[np.bool_]) -> tuple[Floats, ...]:
+    """Return mean, standard error, minimum and maximum, as ``mean_and_error`` does the first two."""
     values = np.moveaxis(values, done.ndim - 1, 0)
     if done.all():
-        moments = moments_of(values)
-        return moments.mean, moments.standard_error
-    mean, error = (np.full(values.shape[1:], math.nan) for _ in range(2))
+        return _statistics(values)
+    found = tuple(np.full(values.shape[1:], math.nan) for _ in range(4))
     for cell in np.ndindex(done.shape[:-1]):
         kept = values[(done[cell], *cell)]
-        if len(kept):
-            moments = moments_of(kept)
-            mean[cell], error[cell] = moments.mean, moments.standard_error
-    return mean, error
+        for array, value in zip(found, _statistics(kept), strict=True) if len(kept) else ():
+            array[cell] = value
+    return found
+
+
+def _statistics(values: Floats) -> tuple[Floats, ...]:
+    moments = moments_of(values)
+    return moments.mean, moments.standard_error, moments.minimum, moments.maximum
 
 
 class Mergeable(Protocol):
