@@ -144,8 +144,7 @@ def _part(scene: Scene) -> Ensemble:
     count = _MAX_PAIRED if paired else _MAX_ASPERITIES
     if scene.interaction is not None and scene.interaction.boundary == "free" and not paired:
         count = math.ceil(source.expected_count)  # a larger patch sinks deeper under a pressure
-    stratified = not source.reason_against("stratified")
-    ensemble = source.limited_to(count).ensemble(scene.seed, 0, stratified=stratified, with_positions=paired)
+    ensemble = source.limited_to(count).evenly_drawn(scene.seed, with_positions=paired)
     return part_of(ensemble, count) if paired else ensemble
 
 

@@ -113,8 +113,7 @@ def _law(scene: Scene, names: list[str], start: float) -> Law:
 
     if source.is_random and not scene.reason_against("expected"):
         return lambda h: simulate_realization(scene, path(h), 0, names, "expected").variables[variable][1:]
-    stratified = source.is_random and not source.reason_against("stratified")
-    ensemble = source.ensemble(scene.seed, 0, stratified=stratified, with_positions=scene.needs_positions)
+    ensemble = source.evenly_drawn(scene.seed, with_positions=scene.needs_positions)
     return lambda h: simulate_ensemble(scene, path(h), ensemble, names).variables[variable][1:]
 
 

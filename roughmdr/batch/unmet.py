@@ -58,9 +58,7 @@ def _per_force(cell: Cell) -> float | Floats:
     """
     if not isinstance(cell.controlled, MachinePath):
         return 1.0
-    source = cell.scene.asperities
-    stratified = source.is_random and not source.reason_against("stratified")
-    ensemble = source.ensemble(cell.scene.seed, 0, stratified=stratified)
+    ensemble = cell.scene.asperities.evenly_drawn(cell.scene.seed)
     independent = cell.scene.model_copy(update={"interaction": None})
     stiffness = simulate_ensemble(independent, cell.path, ensemble, ["stiffness"]).variables["stiffness"]
     machine = cell.controlled.machine

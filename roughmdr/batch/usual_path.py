@@ -31,10 +31,7 @@ def usual_path(cell: Scene, machine: MachinePath) -> LoadingPath:
 
     SceneError where there is none.
     """
-    source = cell.asperities
-    stratified = source.is_random and not source.reason_against("stratified")
-    ensemble = source.ensemble(cell.seed, 0, stratified=stratified)
-    problem = Problem(ensemble, cell.effective_modulus, cell.adhesion_model)
+    problem = Problem(cell.asperities.evenly_drawn(cell.seed), cell.effective_modulus, cell.adhesion_model)
     try:
         law = simulate(problem, machine, ["separation"])
     except RoughmdrError as error:

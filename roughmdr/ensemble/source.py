@@ -135,6 +135,10 @@ class Source(Section):
         """Return the asperities of one realisation; ``stratified`` ones cover their distributions evenly."""
         raise NotImplementedError
 
+    def evenly_drawn(self, seed: int, *, with_positions: bool = False) -> Ensemble:
+        """Return the asperities of the first realisation, stratified where they can be."""
+        return self.ensemble(seed, 0, stratified=not self.reason_against("stratified"), with_positions=with_positions)
+
     def extremes(self, chance: float) -> Ensemble:
         """Return asperities of the height that one exceeds with this chance, with shape parameters that cover all but
         tails of this chance; all asperities themselves where nothing is drawn.
@@ -166,12 +170,12 @@ class Source(Section):
     @property
     def all_alike(self) -> bool:
         """Whether they are a given number of equal asperities, without random draws."""
-        return False
+        return self.equal_heights and self.given_count is not None and self.node_count(2) == 1
 
     @property
     def one_parameter(self) -> bool:
         """Whether just one shape parameter is random, in one population."""
-        return False
+        return self.node_axes == (1,)
 
     @property
     def drawn_parameters(self) -> list[Callable[[Floats], Floats]]:
@@ -185,7 +189,7 @@ class Source(Section):
 
     def node_count(self, order: int) -> int:
         """Return the number of ``nodes`` of a rule with so many scores."""
-        raise NotImplementedError
+        return sum(order**axes for axes in self.node_axes)
 
     @property
     def heights_depend(self) -> bool:

@@ -151,15 +151,8 @@ class NayakAsperities(PatchSource):
         return self.summits.sigma
 
     @property
-    def one_parameter(self) -> bool:
-        return True  # the product of the curvatures
-
-    @property
     def node_axes(self) -> tuple[int, ...]:
-        return (1,)
-
-    def node_count(self, order: int) -> int:
-        return order
+        return (1,)  # the product of the curvatures
 
     @property
     def heights_depend(self) -> bool:

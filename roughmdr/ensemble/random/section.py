@@ -202,14 +202,6 @@ class RandomAsperities(PatchSource):
         return any(each.height.constant is not None for each in self.populations.members)
 
     @property
-    def all_alike(self) -> bool:
-        return self.equal_heights and self.node_count(2) == 1 and self.count is not None
-
-    @property
-    def one_parameter(self) -> bool:
-        return len(self.populations.members) == 1 and len(self.drawn_parameters) == 1
-
-    @property
     def drawn_parameters(self) -> list[Callable[[Floats], Floats]]:
         members = self.populations.members
         return [each.parameters[name].from_scores for each in members for name in each.random_parameters]
@@ -217,9 +209,6 @@ class RandomAsperities(PatchSource):
     @property
     def node_axes(self) -> tuple[int, ...]:
         return tuple(len(population.random_parameters) for population in self.populations.members)
-
-    def node_count(self, order: int) -> int:
-        return sum(order**axes for axes in self.node_axes)
 
     @property
     def heights_depend(self) -> bool:
