@@ -7,7 +7,7 @@ the result does not depend on who computed which of them, or when.
 import math
 from collections.abc import Iterator
 from functools import reduce
-from typing import Any, Generic, NamedTuple, Protocol, Self, TypeVar
+from typing import Any, Generic, NamedTuple, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -143,18 +143,7 @@ def _statistics(values: Floats) -> tuple[Floats, ...]:
     return moments.mean, moments.standard_error, moments.minimum, moments.maximum
 
 
-class Mergeable(Protocol):
-    """Something about a number of realisations that can be merged with that about the next."""
-
-    @property
-    def size(self) -> int:
-        """Number of realisations."""
-
-    def merged(self, other: Self) -> Self:
-        """Return both together."""
-
-
-_Block = TypeVar("_Block", bound=Mergeable)
+_Block = TypeVar("_Block", Moments, KnownMoments)
 
 
 class MomentTree(Generic[_Block]):

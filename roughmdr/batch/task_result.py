@@ -50,7 +50,11 @@ class TaskResult(NamedTuple):
         )
         cells, firsts = (np.array(each, dtype=np.int64) for each in (cell, first))
         pull_offs = np.array([each.table for each in known]).reshape(len(rows), len(KNOWN_ROWS), len(PullOff._fields))
-        return cls(tuple(keys), tuple(variables), cells, firsts, size, arrays, pull_offs, columns_of(diagnostics))
+        columns: Columns = {
+            name: np.array([row[name] for row in diagnostics], dtype=each.dtype)
+            for name, each in RUN_DIAGNOSTICS.items()
+        }
+        return cls(tuple(keys), tuple(variables), cells, firsts, size, arrays, pull_offs, columns)
 
     @property
     def realizations(self) -> int:
@@ -118,11 +122,6 @@ def row_of(**known: Any) -> Row:
     if undeclared := known.keys() - RUN_DIAGNOSTICS.keys():
         raise AssertionError(f"not declared in RUN_DIAGNOSTICS: {', '.join(undeclared)}")
     return {name: known.get(name, declared.missing) for name, declared in RUN_DIAGNOSTICS.items()}
-
-
-def columns_of(rows: Sequence[Row]) -> Columns:
-    """Return the diagnostics of runs as arrays."""
-    return {name: np.array([row[name] for row in rows], dtype=each.dtype) for name, each in RUN_DIAGNOSTICS.items()}
 
 
 def complete(stated: Columns, count: int) -> Columns:

@@ -6,7 +6,7 @@ from functools import cache
 from importlib.metadata import version
 from typing import Any
 
-from roughmdr.batch.plan import Cell, Plan
+from roughmdr.batch.plan import Plan
 from roughmdr.errors import RoughmdrError
 from roughmdr.numerics.fingerprint import NUMBERS, fingerprint
 from roughmdr.scene.identity import LAYOUT, Digests
@@ -32,15 +32,15 @@ def check_versions(asked: str) -> None:
 
 
 def keys_of(plan: Plan, estimator: str) -> list[str]:
-    """Return the key of each cell of a plan under an estimator."""
-    digests = Digests()
-    return [_key(digests.of(cell.scene), cell, estimator) for cell in plan.cells]
-
-
-def _key(scene: str, cell: Cell, estimator: str) -> str:
-    """Return the key of a cell whose scene has a digest; "clear" depends on how many realisations there may be."""
-    parts = scene, hashlib.sha256(cell.values.tobytes()).hexdigest(), estimator, versions()
-    return hashlib.sha256(repr(parts).encode()).hexdigest()[:32]
+    """Return the key of each cell of a plan under an estimator, with its path: "clear" depends on how many realisations
+    there may be.
+    """
+    digests, keys = Digests(), list[str]()
+    for cell in plan.cells:
+        path = hashlib.sha256(cell.values.tobytes()).hexdigest()
+        parts = digests.of(cell.scene), path, estimator, versions()
+        keys.append(hashlib.sha256(repr(parts).encode()).hexdigest()[:32])
+    return keys
 
 
 def changes(old: str, new: str) -> Iterator[str]:
