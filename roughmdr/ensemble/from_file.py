@@ -48,7 +48,7 @@ class FromFile(Source):
     """File of the map or of the ensemble, relative to the scene."""
 
     def read(self) -> Ensemble:
-        """Read the asperities of the file; SceneError where it cannot be read or describes no valid asperities."""
+        """Read the asperities of the file; RoughmdrError where it cannot be read or describes no valid asperities."""
         raise NotImplementedError
 
     @cached_property
@@ -62,7 +62,11 @@ class FromFile(Source):
             except OSError as error:
                 raise SceneError(f"{self.file}: cannot be read: {error.strerror}") from None
 
-        before, asperities = current_hash(), self.read()
+        before = current_hash()
+        try:
+            asperities = self.read()
+        except RoughmdrError as error:
+            raise SceneError(f"{self.file}: {error}") from error
         if current_hash() != before:
             raise SceneError(f"{self.file}: changed while it was read")
         return before, asperities
@@ -111,9 +115,6 @@ class FileAsperities(FromFile):
     source: Literal["file"]
 
     def read(self) -> Ensemble:
-        try:
-            with open_dataset(Path(self.file)) as dataset:
-                dataset.load()
-            return Ensemble.from_dataset(dataset)
-        except RoughmdrError as error:
-            raise SceneError(f"{self.file}: {error}") from None
+        with open_dataset(Path(self.file)) as dataset:
+            dataset.load()
+        return Ensemble.from_dataset(dataset)

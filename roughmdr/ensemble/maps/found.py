@@ -8,7 +8,7 @@ import numpy as np
 from roughmdr.ensemble.ensemble import Ensemble
 from roughmdr.ensemble.maps.height_map import HeightMap, map_statistics
 from roughmdr.ensemble.maps.plausible import implausible
-from roughmdr.ensemble.maps.resolution import hills_warning, radius_uncertainty, warning
+from roughmdr.ensemble.maps.resolution import radius_uncertainty, warning
 from roughmdr.ensemble.maps.summits import find_summits
 from roughmdr.errors import RoughmdrError
 from roughmdr.schema.quantities import EntryError
@@ -55,10 +55,7 @@ def asperities_on(
 
         found = find_hills(surface, found)
     all_attrs = {**found.attrs, **attrs}
-    if model == "hills":
-        text = hills_warning(name, all_attrs)
-    else:
+    if model == "summits":
         all_attrs["radius_uncertainty"] = radius_uncertainty(all_attrs)
-        text = warning(name, all_attrs)
     remarks = [f"{name}: {remark}" for remark in (implausible(all_attrs), attrs.get("doubtful")) if remark]
-    return replace(found, attrs=all_attrs, warnings=tuple(filter(None, (*remarks, text))))
+    return replace(found, attrs=all_attrs, warnings=tuple(filter(None, (*remarks, warning(name, all_attrs)))))

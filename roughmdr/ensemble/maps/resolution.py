@@ -45,11 +45,6 @@ _CAUSES = {
 }
 
 
-def sampling_error(points_per_summit: float, misfit: float) -> float:
-    """Return the relative excess of the radii by too few points."""
-    return min(misfit, _USUAL_PER_MISFIT / points_per_summit, 1.0)
-
-
 def noise_error(points_per_summit: float, misfit: float) -> float:
     """Return the relative deficit of the radii by white noise.
 
@@ -61,21 +56,19 @@ def noise_error(points_per_summit: float, misfit: float) -> float:
     return 1.0 / math.sqrt(1.0 - min(max(share, 0.0), _MAX_NOISE)) - 1.0
 
 
-def cutoff_error(radius: float, uncut_radius: float) -> float:
-    """Return the relative excess of the radii by a cutoff, if all that it removes was real."""
-    return max(1.0 - uncut_radius / radius, 0.0)
-
-
 def radius_errors(attrs: Mapping[str, float | int | str]) -> dict[str, float]:
-    """Return the relative errors that the radii of a map may have, by cause, from the attributes of its ensemble."""
+    """Return the relative errors that the radii of a map may have, by cause, from the attributes of its ensemble.
+
+    Too few points make them too large, and so does a cutoff, if all that it removes was real; noise makes them small.
+    """
 
     def of(name: str) -> float:
         return float(attrs[name])
 
     points, misfit = of("points_per_summit"), of("misfit")
-    errors = {"sampling": sampling_error(points, misfit), "noise": noise_error(points, misfit)}
+    errors = {"sampling": min(misfit, _USUAL_PER_MISFIT / points, 1.0), "noise": noise_error(points, misfit)}
     if "cutoff" in attrs:
-        errors["cutoff"] = cutoff_error(of("mean_curvature_radius"), of("uncut_mean_curvature_radius"))
+        errors["cutoff"] = max(1.0 - of("uncut_mean_curvature_radius") / of("mean_curvature_radius"), 0.0)
     return errors
 
 
@@ -101,25 +94,12 @@ def border_error(surface: HeightMap, length: float, share: float) -> float:
     return 0.0 if surface.periodic else share * min(2.0 * sum(length / side for side in sides), 1.0)
 
 
-def hills_verdict(attrs: Mapping[str, float | int | str]) -> str:
-    """Return in words how well a map resolves its hills."""
-    points, error = float(attrs["points_per_wave"]), float(attrs["resolution_error"])
-    if error <= MAX_HILLS_ERROR:
-        return f"{points:.3g} points a wavelength: the map resolves its hills"
-    return f"{points:.3g} points a wavelength: forces too low by about {100.0 * error:.0f} % for want of points"
-
-
-def hills_warning(name: str, attrs: Mapping[str, float | int | str]) -> str:
-    """Return the warning of a map ``name`` that does not resolve its hills; empty where it does."""
-    if float(attrs["resolution_error"]) <= MAX_HILLS_ERROR:
-        return ""
-    return (
-        f"{name}: {hills_verdict(attrs)}, or what it shows between neighbouring points is noise; a finer map would tell"
-    )
-
-
 def verdict(attrs: Mapping[str, float | int | str]) -> str:
-    """Return in words the uncertainty of the radii, with its cause if it is large."""
+    """Return in words how well a map resolves its hills, or the uncertainty of radii, with its cause if it is large."""
+    if attrs.get("asperity_model") == "hills":
+        points, error = float(attrs["points_per_wave"]), float(attrs["resolution_error"])
+        low = f"forces too low by about {100.0 * error:.0f} % for want of points"
+        return f"{points:.3g} points a wavelength: {low if error > MAX_HILLS_ERROR else 'the map resolves its hills'}"
     errors = radius_errors(attrs)
     cause = max(errors, key=errors.__getitem__)
     error = errors[cause]
@@ -131,7 +111,12 @@ def verdict(attrs: Mapping[str, float | int | str]) -> str:
 
 
 def warning(name: str, attrs: Mapping[str, float | int | str]) -> str:
-    """Return the warning of a map ``name`` whose radii are uncertain; empty where they are not."""
+    """Return the warning of a map ``name`` that does not resolve its hills, or whose radii are uncertain; empty for
+    none.
+    """
+    if attrs.get("asperity_model") == "hills":
+        noise = "or what it shows between neighbouring points is noise; a finer map would tell"
+        return f"{name}: {verdict(attrs)}, {noise}" if float(attrs["resolution_error"]) > MAX_HILLS_ERROR else ""
     errors = radius_errors(attrs)
     if max(errors.values()) <= MAX_UNCERTAINTY:
         return ""

@@ -74,19 +74,15 @@ class SurfaceAsperities(FromFile):
         return value
 
     def read(self) -> Ensemble:
-        try:
-            surface = self._read_map()
-            noise, raw = surface.rounding + _ROUNDING * surface.highest, mean_and_rms(surface)[1]
-            trend = self._trend(surface)
-            self._remove_trend(surface)
-            attrs: dict[str, float | int | str] = {**surface.attrs, "rms_height_raw": raw, "detrend": trend}
-            if self.cutoff is not None:
-                uncut = summits_on(surface, noise, trend).attrs
-                attrs |= {"cutoff": self.cutoff, **{f"uncut_{name}": uncut[name] for name in _UNCUT}}
-                remove_short_waves(surface, self.cutoff)
-            return asperities_on(surface, noise, self.model, Path(self.file).name, attrs)
-        except RoughmdrError as error:
-            raise SceneError(f"{self.file}: {error}") from error
+        surface = self._read_map()
+        noise, raw = surface.rounding + _ROUNDING * surface.highest, mean_and_rms(surface)[1]
+        trend = self._remove_trend(surface)
+        attrs: dict[str, float | int | str] = {**surface.attrs, "rms_height_raw": raw, "detrend": trend}
+        if self.cutoff is not None:
+            uncut = summits_on(surface, noise, trend).attrs
+            attrs |= {"cutoff": self.cutoff, **{f"uncut_{name}": uncut[name] for name in _UNCUT}}
+            remove_short_waves(surface, self.cutoff)
+        return asperities_on(surface, noise, self.model, Path(self.file).name, attrs)
 
     @property
     def description(self) -> tuple[str, ...]:
@@ -113,23 +109,15 @@ class SurfaceAsperities(FromFile):
         return MapWaves.of(self.height_map(0, 0), self.cutoff)
 
     def _read_map(self) -> HeightMap:
-        path = Path(self.file)
-        return read_map(
-            path,
-            size=self.size,
-            unit=self.unit,
-            channel=self.channel,
-            periodic=self.periodic,
-            outliers=self.outliers,
-        )
+        given = {name: getattr(self, name) for name in ("size", "unit", "channel", "periodic", "outliers")}
+        return read_map(Path(self.file), **given)
 
-    def _trend(self, surface: HeightMap) -> Trend:
-        return self.detrend or ("mean" if surface.periodic else "quadratic")
-
-    def _remove_trend(self, surface: HeightMap) -> None:
-        trend = self._trend(surface)
+    def _remove_trend(self, surface: HeightMap) -> Trend:
+        """Remove the trend of a map, and return which."""
+        trend = self.detrend or ("mean" if surface.periodic else "quadratic")
         if surface.periodic and trend in ("plane", "quadratic"):
             raise RoughmdrError(
                 f'a periodic map has no trend to remove: detrend is {trend!r}; it must be "mean" or "none"'
             )
         remove_trend(surface.height, trend)
+        return trend

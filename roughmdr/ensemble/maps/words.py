@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 
 from roughmdr.ensemble.maps.plausible import implausible
-from roughmdr.ensemble.maps.resolution import hills_verdict, verdict
+from roughmdr.ensemble.maps.resolution import verdict
 from roughmdr.ensemble.maps.waves import MapWaves
 from roughmdr.schema.units import format_quantity
 
@@ -27,15 +27,10 @@ def describe_map(attrs: Mapping[str, float | int | str]) -> tuple[str, ...]:
             f"{length('rms_height')} after the cutoff"
         )
         slopes += f", uncut {attrs['uncut_rms_slope']:.3g}: pressures at a given contact area fall with it"
-    found = (
-        (
-            f"hills on a wavelength of {length('wavelength')}, their contacts {attrs['area_share']:.2g} of the area of "
-            f"circles as stiff; r.m.s. slopes along and across differ by a factor of {attrs['anisotropy']:.3g}",
-            hills_verdict(attrs),
-        )
-        if attrs.get("asperity_model") == "hills"
-        else (verdict(attrs),)
-    )
+    hills = ""
+    if attrs.get("asperity_model") == "hills":
+        hills = f"hills on a wavelength of {length('wavelength')}, their contacts {attrs['area_share']:.2g} of the area"
+        hills += f" of circles as stiff; r.m.s. slopes along and across differ by a factor of {attrs['anisotropy']:.3g}"
     rows = f", rows of the file along {attrs['rows_along']}" if "rows_along" in attrs else ""
     outliers = f", {attrs['outliers']} outliers among them" if "outliers" in attrs else ""
     if "blind_share" in attrs:
@@ -47,7 +42,7 @@ def describe_map(attrs: Mapping[str, float | int | str]) -> tuple[str, ...]:
         f"{heights}; {slopes}",
         f"{attrs['points_per_summit']:.3g} points a summit, misfit {attrs['misfit']:.2g}; "
         f"{attrs['saddles']} saddles left out",
-        *found,
+        *filter(None, (hills, verdict(attrs))),
     )
 
 
