@@ -4,9 +4,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from roughmdr.batch.paths import machine_path
 from roughmdr.batch.plan import Cell, Plan
 from roughmdr.batch.realization import simulate_realization
-from roughmdr.batch.usual_path import machine_path
 from roughmdr.errors import Fault, RoughmdrError, SceneError
 from roughmdr.loading.machine import MachinePath
 from roughmdr.numerics.arguments import Floats

@@ -9,8 +9,7 @@ from numpy.typing import NDArray
 
 from roughmdr.aggregate import LoadingPath
 from roughmdr.batch.choice import Choice
-from roughmdr.batch.path_ends import PathFinder
-from roughmdr.batch.usual_path import machine_path, usual_path
+from roughmdr.batch.paths import PathFinder, machine_path, usual_path
 from roughmdr.errors import SceneError
 from roughmdr.interaction.placed import check_placed
 from roughmdr.loading.lateral import LateralPath, Path

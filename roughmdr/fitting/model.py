@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 
 from roughmdr.aggregate import LoadingPath, LoadSeparation, Problem
 from roughmdr.aggregate.under_machine import separations_of
+from roughmdr.batch.paths import machine_path
 from roughmdr.batch.realization import simulate_realization
-from roughmdr.batch.usual_path import machine_path
 from roughmdr.errors import OutOfRange, RoughmdrError, SceneError, StoreError
 from roughmdr.expected import ForceRule, expected_force
 from roughmdr.fitting.correlation import correlation_of_noise
@@ -152,7 +152,9 @@ class Model:
         scene = self.scene(x)
         path = self._path_in(scene, x, values)
         if self._is_plain and isinstance(path, MachinePath) and scene.asperities.all_alike:
-            path = path_under_machine(scene, path)
+            problem = Problem(scene.asperities.ensemble(0, 0), scene.effective_modulus, scene.adhesion_model)
+            separation, _ = separations_of(problem, path.machine, path.demand)
+            path = LoadingPath.along(separation, unload=False, adhesive=path.adhesive)
         if not (self._is_plain and isinstance(path, LoadingPath)):
             law = simulate_realization(scene, path, 0, [self.curve.quantity], "expected")
             load = law.variables[self.curve.quantity]
@@ -269,10 +271,3 @@ def changes_of(touching: NDArray[np.integer]) -> NDArray[np.intp]:
     """Return the steps after which contact is made or lost, each as often as that happens there."""
     changes = np.abs(np.diff(touching))
     return np.repeat(np.arange(changes.size), changes)
-
-
-def path_under_machine(scene: Scene, path: MachinePath) -> LoadingPath:
-    """Return the path of the flat whose asperities are all alike."""
-    problem = Problem(scene.asperities.ensemble(0, 0), scene.effective_modulus, scene.adhesion_model)
-    separation, _ = separations_of(problem, path.machine, path.demand)
-    return LoadingPath.along(separation, unload=False, adhesive=path.adhesive)

@@ -81,7 +81,8 @@ def _from_all_starts(model: Model) -> Found:
             near = _search(model)
         found = _follow(model, near.x)
     if model.jumps and _cost(found) > 0.0 and found.slopes.any():
-        found = _settled(model, found)
+        x = least_squares_between(model, found.x)
+        found = found._replace(x=x, deviations=model.deviations(x), slopes=slopes_of(model, x))
     model.curve = model.curve._replace(level=model.baseline(found.x))
     return found
 
@@ -90,7 +91,7 @@ def _search(model: Model) -> Found:
     start = model.begin
     first = with_measured_jumps(model, start) if model.jumps and model.exact else start
     found = [_follow(model, first)] if np.isfinite(model.deviations(first)).all() else []
-    if not found or _is_poor(model, found[0]):
+    if not found or is_systematic(found[0].residuals) or relative_rms(model.curve, found[0].deviations) > POOR:
         starts = np.concatenate([_other_starts(model), start[None]]) if first.any() else _other_starts(model)
         costs = [float(np.sum(np.square(model.deviations(x)))) for x in starts]
         best = [starts[i] for i in np.argsort(costs)[:_TRIED] if np.isfinite(costs[i])]
@@ -102,16 +103,6 @@ def _search(model: Model) -> Found:
 
 def _cost(found: Found) -> float:
     return float(np.sum(np.square(found.deviations)))
-
-
-def _settled(model: Model, found: Found) -> Found:
-    """Return the least squares of all intervals between jumps: see ``jumps``."""
-    x = least_squares_between(model, found.x)
-    return Found(x, model.deviations(x), slopes_of(model, x), found.converged, found.points)
-
-
-def _is_poor(model: Model, found: Found) -> bool:
-    return is_systematic(found.residuals) or relative_rms(model.curve, found.deviations) > POOR
 
 
 def _follow(model: Model, start: Floats) -> Found:

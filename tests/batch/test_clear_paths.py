@@ -12,7 +12,7 @@ from forms import large
 from scenes import ASPERITIES, ensemble, scene
 
 import roughmdr as rm
-from roughmdr.batch.path_ends import clear_start
+from roughmdr.batch.paths import clear_start
 from roughmdr.errors import SceneError, TooMuchContact
 from roughmdr.loading.first_reached import first_reached
 from roughmdr.numerics.arguments import Floats

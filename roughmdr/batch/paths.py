@@ -1,5 +1,5 @@
-"""The steps of a scene's path, with the ends that follow from its asperities and its material: start = "clear", and
-stop = { contact_fraction = ... } or { pressure = ... }.
+"""The path of a scene: its machine, and its steps with the ends that follow from asperities and material: start =
+"clear", and stop = { contact_fraction = ... } or { pressure = ... }.
 
 At "clear" no asperity of any realisation touches, or attracts, the flat. Of asperities that are not drawn it is exact.
 Of others it lies above the height that is exceeded, with a chance of 1e-3, by any asperity of ten thousand realisations
@@ -16,10 +16,11 @@ import math
 
 import numpy as np
 
-from roughmdr.aggregate import LoadingPath, Problem
+from roughmdr.aggregate import LoadingPath, Problem, simulate
 from roughmdr.batch.realization import simulate_ensemble, simulate_realization
 from roughmdr.errors import Fault, RoughmdrError, SceneError
 from roughmdr.loading.first_reached import Law, OutOfReach, first_reached
+from roughmdr.loading.machine import MachinePath
 from roughmdr.model_error.refusal import Givens, likely_cause
 from roughmdr.numerics.arguments import Floats
 from roughmdr.scene import Scene
@@ -146,3 +147,34 @@ def _exceeded(scene: Scene, chance: float) -> float:
 def _no_start(message: str) -> SceneError:
     hint = 'give it as a separation, as start = "4 sigma"'
     return SceneError.of([Fault("path.separation.start", f'"{CLEAR}"', f"{message}; {hint}")])
+
+
+def machine_path(cell: Scene, values: Floats) -> MachinePath:
+    """Return the path of a machine that controls these values, in SI; SceneError where it needs a nominal area."""
+    path, area = cell.path, cell.asperities.nominal_area
+    if path.area_key and area is None:
+        raise SceneError.of([Fault(path.area_key, "", "needs a nominal area, which these asperities do not have")])
+    if path.to_preload:
+        stiffness, adhesive = path.machine_stiffness, cell.work > 0.0
+        return MachinePath.to_preload(values, path.to_preload, machine_stiffness=stiffness, adhesive=adhesive)
+    return MachinePath.along(
+        path.control,
+        values,
+        machine_stiffness=path.machine_stiffness or 0.0,
+        area=area or 1.0,
+        adhesive=cell.work > 0.0,
+    )
+
+
+def usual_path(cell: Scene, machine: MachinePath) -> LoadingPath:
+    """Return the path of the flat on evenly drawn, independent asperities; clear of them where it has been pulled off.
+
+    SceneError where there is none.
+    """
+    problem = Problem(cell.asperities.evenly_drawn(cell.seed), cell.effective_modulus, cell.adhesion_model)
+    try:
+        law = simulate(problem, machine, ["separation"])
+    except RoughmdrError as error:
+        raise SceneError.of([Fault(f"path.{cell.path.key}", "", f"cannot be followed: {error}")]) from error
+    separation = np.where(np.isnan(law.variables["separation"]), problem.clear, law.variables["separation"])
+    return LoadingPath.along(separation, unload=False, adhesive=machine.adhesive)
