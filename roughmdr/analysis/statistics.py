@@ -51,7 +51,7 @@ def statistics(dataset: "xr.Dataset") -> "xr.Dataset":
     """
     import xarray as xr
 
-    if _is_found(dataset):
+    if "realization" in dataset.dims and any(str(name).endswith(_ERROR) for name in dataset.data_vars):
         return _of_found(dataset)
     result = result_of(dataset)
     if result.keeps_statistics:
@@ -99,11 +99,6 @@ def _model_errors(reduced: "xr.Dataset") -> "Mapping[Any, xr.DataArray]":
     if not reduced.chunks:
         return along(reduced).data_vars
     return xr.map_blocks(along, reduced.chunk(-1), template=along(xr.ones_like(reduced)).chunk(-1)).data_vars
-
-
-def _is_found(dataset: "xr.Dataset") -> bool:
-    """Return whether a dataset holds values that were interpolated on the curves of realisations."""
-    return "realization" in dataset.dims and any(str(name).endswith(_ERROR) for name in dataset.data_vars)
 
 
 def _of_found(dataset: "xr.Dataset") -> "xr.Dataset":

@@ -7,7 +7,7 @@ from pydantic import StrictBool, ValidationInfo, field_validator, model_validato
 
 from roughmdr.ensemble.lattice import LATTICES, Lattice, at_most, lattice_of, nearest_that_fit
 from roughmdr.ensemble.source import Patch, Source
-from roughmdr.ensemble.streams import Streams
+from roughmdr.ensemble.streams import POSITION, Streams
 from roughmdr.errors import RoughmdrError
 from roughmdr.numerics.arguments import Floats
 from roughmdr.schema.quantities import EntryError
@@ -137,5 +137,5 @@ class PatchSource(Source):
         elif self.placement == "hexagonal":
             x, y = placement.nearly_hexagonal_positions(count, self.patch)
         else:
-            x, y = placement.random_positions(streams, count, self.patch)
+            x, y = streams(POSITION, 2 * count).reshape(count, 2).T * self.patch
         return {"x": x, "y": y}

@@ -14,12 +14,6 @@ _JAMMING_COVERAGE = 0.547  # share of the plane that jammed random discs cover (
 _MAX_TRIES = 2**10  # candidates for one point, on average, before the patch counts as full
 
 
-def random_positions(streams: Streams, count: int, patch: float) -> tuple[Floats, Floats]:
-    """Return x and y [m] of ``count`` points, uniform on a patch of side ``patch`` [m]."""
-    x, y = streams(POSITION, 2 * count).reshape(count, 2).T * patch
-    return x, y
-
-
 def nearly_hexagonal_positions(count: int, patch: float) -> tuple[Floats, Floats]:
     """Return x and y [m] of ``count`` points in rows, as near to a hexagonal lattice as a square patch [m] allows.
 

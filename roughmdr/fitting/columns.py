@@ -51,7 +51,8 @@ def read_columns(measured: "str | Path | pd.DataFrame | xr.Dataset") -> Columns:
     if hasattr(measured, "data_vars"):
         return _of_dataset(measured)
     if hasattr(measured, "columns") and hasattr(measured, "itertuples"):
-        return _of_frame(measured)
+        rows = [(f"row {label}", list(row)) for label, *row in measured.itertuples(name=None)]
+        return _titled("measured", list(map(str, measured.columns)), rows)
     raise StoreError(f"measured is {short_repr(measured)}; it must be the path of a CSV file, a DataFrame or a Dataset")
 
 
@@ -131,11 +132,6 @@ def _lines(text: str) -> Iterator[tuple[int, str]]:
         kept = line.partition("#")[0]
         if kept.strip():
             yield number, kept
-
-
-def _of_frame(frame: Any) -> Columns:
-    rows = [(f"row {label}", list(row)) for label, *row in frame.itertuples(name=None)]
-    return _titled("measured", list(map(str, frame.columns)), rows)
 
 
 def _of_dataset(dataset: Any) -> Columns:

@@ -130,7 +130,7 @@ def _told_apart(group: list[int], parameters: list[Parameter], known: Uncertaint
         return text
     pair = [parameters[i] for i in group]
     text += f" (correlation {correlation:.4g})"
-    best = _best_known(known.by_even_noise[group])
+    best = np.linalg.svd(known.by_even_noise[group], full_matrices=False)[0][:, -1]  # of the smallest standard error
     if all(parameter.logarithmic for parameter in pair):
         exponents = best / np.abs(best).max() * np.sign(best[np.abs(best).argmax()])
         combination = np.zeros(len(parameters))
@@ -149,12 +149,6 @@ def _told_apart(group: list[int], parameters: list[Parameter], known: Uncertaint
     ratio = float(weights[1] / weights[0])
     part = "" if abs(abs(ratio) - 1.0) < 0.005 else f"{abs(ratio):.2g} "
     return f"{text}; it determines {names[0]} {'+' if ratio > 0.0 else '-'} {part}{names[1]}"
-
-
-def _best_known(influence: Floats) -> Floats:
-    """Return the combination of two parameters with the smallest standard error."""
-    directions, _, _ = np.linalg.svd(influence, full_matrices=False)
-    return np.asarray(directions[:, -1])
 
 
 def _power(key: str, exponent: float) -> str:

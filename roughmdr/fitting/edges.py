@@ -43,17 +43,16 @@ def certain_edges(model: Model, found: Found) -> Edges:
             sign = (-1, 1)[side]
             next_one = np.array(here.jumps) + sign * (np.arange(places.size) == jump)
             beyond = nearest_in(model, here, tuple(next_one.tolist()), jumps)
-            if beyond is not None and _least_by(left, beyond.deviations) - least > _CERTAIN * noise:
+            if beyond is None:
+                continue
+            # the least that parameters can reach there if the law is linear in them
+            squares = np.sum(np.square(beyond.deviations)) - np.sum(np.square(left.T @ beyond.deviations))
+            if squares - least > _CERTAIN * noise:
                 edges.append((sign * slopes[jump], end))
-            elif beyond is not None:
+            else:
                 certain = False
     sides = np.array([side for side, _ in edges]).reshape(-1, found.x.size)
     return Edges(sides, np.array([end for _, end in edges]), certain)
-
-
-def _least_by(left: Floats, deviations: Floats) -> float:
-    """Return the least sum of squares that parameters can reach if the law is linear in them."""
-    return float(np.sum(np.square(deviations)) - np.sum(np.square(left.T @ deviations)))
 
 
 def farthest(direction: Floats, radius: float, edges: Edges) -> float:

@@ -90,8 +90,10 @@ class Populations:
             name: streams(stream, count) if stream in random else level  # constants depend on no level
             for name, stream in self.parameter_streams.items()
         }
-        if self.correlated:
-            levels[self.correlated] = self._correlated_levels(level, levels[self.correlated])
+        if self.correlated:  # by the copula
+            r, independent = self.score_correlation, ndtri(levels[self.correlated])
+            joined = ndtr(r * ndtri(level) + math.sqrt((1.0 - r) * (1.0 + r)) * independent)
+            levels[self.correlated] = np.clip(joined, SMALLEST_UNIFORM, 1.0 - SMALLEST_UNIFORM)
         first = self.members[0]
         height = first.height.quantile(level)
         parameters = {name: entry.quantile(levels[name]) for name, entry in first.parameters.items()}
@@ -101,9 +103,3 @@ class Populations:
             for name, entry in other.parameters.items():
                 parameters[name][belongs] = entry.quantile(levels[name][belongs])
         return height, parameters
-
-    def _correlated_levels(self, height_level: Floats, independent: Floats) -> Floats:
-        """Return levels of the parameter that are correlated with those of the heights by the copula."""
-        r = self.score_correlation
-        levels = ndtr(r * ndtri(height_level) + math.sqrt((1.0 - r) * (1.0 + r)) * ndtri(independent))
-        return np.clip(levels, SMALLEST_UNIFORM, 1.0 - SMALLEST_UNIFORM)
