@@ -113,8 +113,8 @@ class Plan(NamedTuple):
     @property
     def lattice_lines(self) -> list[str]:
         """Lines on the lattices that asperities fill, with the number of cells where not of all."""
-        lines = (cell.scene.asperities.lattice_in_words for cell in self.cells)
-        return count_by_cell((line for line in lines if line), len(self.cells))
+        lines = filter(None, (cell.scene.asperities.lattice_in_words for cell in self.cells))
+        return count_by_cell(lines, len(self.cells))
 
     @property
     def map_lines(self) -> list[str]:

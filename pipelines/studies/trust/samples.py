@@ -39,7 +39,8 @@ def _of_map(model: Any, waves: int, cut: bool, seed: int) -> xr.Dataset:
     spectrum = SelfAffine.of(hurst=0.8, long_wave=1.0 / waves, short_wave=1.0 / 32.0, rms_slope=0.01)
     height = gaussian_map(spectrum, side * _POINTS, float(side), seed)[:_POINTS, :_POINTS].copy()
     remove_trend(height, "plane" if cut else "mean")
-    return asperities_on(HeightMap(height, 1 / _POINTS, 1 / _POINTS, not cut), 0.0, model, "it").labelled().to_xarray()
+    surface = HeightMap(height, 1 / _POINTS, 1 / _POINTS, not cut)
+    return asperities_on(surface, 0.0, model, "it", {"detrend": "none"}).labelled().to_xarray()
 
 
 def clusters(width: float, seed: int) -> xr.Dataset:

@@ -1,5 +1,6 @@
 """The asperities of a height map by either model of them: summits or hills."""
 
+from collections.abc import Mapping
 from dataclasses import replace
 from typing import Literal
 
@@ -41,14 +42,9 @@ def summits_on(surface: HeightMap, noise: float, detrend: str) -> Ensemble:
 
 
 def asperities_on(
-    surface: HeightMap,
-    noise: float,
-    model: Model,
-    name: str,
-    attrs: dict[str, float | int | str] | None = None,
+    surface: HeightMap, noise: float, model: Model, name: str, attrs: Mapping[str, float | int | str]
 ) -> Ensemble:
     """Return the summits or hills of a map, with its statistics and further ``attrs``; a warning calls it ``name``."""
-    attrs = {"detrend": "none", **(attrs or {})}
     found = summits_on(surface, noise, str(attrs["detrend"]))
     if model == "hills":
         from roughmdr.ensemble.maps.hills.find import find_hills  # it alone needs the compiler

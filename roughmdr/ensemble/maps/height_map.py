@@ -40,6 +40,19 @@ def blocks(rows: int, columns: int, chunk: int = 1) -> Iterator[slice]:
     return (slice(first, min(first + size, rows)) for first in range(0, rows, size))
 
 
+def blocks_with_neighbours(surface: HeightMap) -> Iterator[tuple[Floats, int]]:
+    """Yield blocks of rows of a map with their first rows, and a row and a column of neighbours at each side: those of
+    the next period, or else the border itself, of which no point is an inner one.
+    """
+    height, (nx, ny) = surface.height, surface.height.shape
+    if not surface.periodic:
+        yield from ((height[rows.start : rows.stop + 2], rows.start) for rows in blocks(nx - 2, ny))
+        return
+    for rows in blocks(nx, ny):
+        padded = height[np.arange(rows.start - 1, rows.stop + 1) % nx]
+        yield np.pad(padded, ((0, 0), (1, 1)), mode="wrap"), rows.start
+
+
 def mean_and_rms(surface: HeightMap) -> tuple[float, float]:
     """Return the mean height, and the r.m.s. height about it [m]."""
     height, scale = surface.height, surface.highest or 1.0  # so that no square leaves the range of a float

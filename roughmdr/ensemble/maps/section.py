@@ -77,7 +77,7 @@ class SurfaceAsperities(FromFile):
         surface = self._read_map()
         noise, raw = surface.rounding + _ROUNDING * surface.highest, mean_and_rms(surface)[1]
         trend = self._remove_trend(surface)
-        attrs: dict[str, float | int | str] = {**surface.attrs, "rms_height_raw": raw, "detrend": trend}
+        attrs: dict[str, float | int | str] = {"detrend": trend, **surface.attrs, "rms_height_raw": raw}
         if self.cutoff is not None:
             uncut = summits_on(surface, noise, trend).attrs
             attrs |= {"cutoff": self.cutoff, **{f"uncut_{name}": uncut[name] for name in _UNCUT}}

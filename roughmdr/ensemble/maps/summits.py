@@ -1,14 +1,13 @@
 """Find the summits of a height map, and fit a paraboloid to each."""
 
 import math
-from collections.abc import Iterator
 from typing import NamedTuple
 
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 
 from roughmdr.ensemble.ensemble import Ensemble
-from roughmdr.ensemble.maps.height_map import HeightMap, blocks
+from roughmdr.ensemble.maps.height_map import HeightMap, blocks_with_neighbours
 from roughmdr.ensemble.maps.resolution import SUMMITS_BY_BORDER, border_error
 from roughmdr.errors import SceneError
 from roughmdr.numerics.arguments import Floats
@@ -45,7 +44,9 @@ def find_summits(surface: HeightMap, noise: float = 0.0) -> Ensemble:
     """
     dx, dy = surface.dx, surface.dy
     nx, ny = surface.height.shape
-    *columns, candidates, blind = zip(*(_fit(*part, noise) for part in _parts(surface)), strict=True)
+    edge = 0.5 if surface.periodic else 1.5
+    fits = (_fit(*block, edge, noise) for block in blocks_with_neighbours(surface))
+    *columns, candidates, blind = zip(*fits, strict=True)
     height, x, y, determinant, second, fourth = map(np.concatenate, columns)
     if not height.size:
         raise SceneError("the map has no summit: no point stands above its eight neighbours on a dome")
@@ -66,23 +67,10 @@ def find_summits(surface: HeightMap, noise: float = 0.0) -> Ensemble:
     return Ensemble("paraboloid", height, radii, defined * dx * dy, positions, attrs).sorted()
 
 
-def _parts(surface: HeightMap) -> Iterator[tuple[Floats, int, float]]:
-    """Yield blocks of rows, with a row and a column of neighbours at each side, and with each block its first row and
-    the distance of the first inner point of the map from the edge of the patch, in spacings.
-    """
-    height, periodic = surface.height, surface.periodic
-    nx, ny = height.shape
-    if not periodic:
-        for rows in blocks(nx - 2, ny):
-            yield height[rows.start : rows.stop + 2], rows.start, 1.5
-        return
-    for rows in blocks(nx, ny):
-        padded = height[np.arange(rows.start - 1, rows.stop + 1) % nx]
-        yield np.pad(padded, ((0, 0), (1, 1)), mode="wrap"), rows.start, 0.5
-
-
 def _fit(part: Floats, first: int, edge: float, noise: float) -> _Fits:
-    """Fit paraboloids to the summits among the inner points of a block."""
+    """Fit paraboloids to the summits among the inner points of a block, the first of which on the map is as far from
+    the ``edge`` of the patch, in spacings.
+    """
     inner = part[1:-1, 1:-1]
 
     def neighbours(i: int, j: int) -> Floats:

@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from roughmdr.ensemble.maps.height_map import HeightMap, blocks, map_statistics, mean_and_rms
+from roughmdr.ensemble.maps.height_map import HeightMap, blocks, blocks_with_neighbours, map_statistics, mean_and_rms
 from roughmdr.numerics.arguments import Floats
 from roughmdr.spectrum import MapSpectrum, Moments
 
@@ -57,17 +57,12 @@ def slope_ratio(surface: HeightMap) -> float:
 
 def mean_square_laplacian(surface: HeightMap) -> float:
     """Return <(h_xx + h_yy)^2> [1/m2] by second differences, over the points whose four neighbours are defined."""
-    height, dx, dy, periodic = surface[:4]
-    nx, ny = height.shape
     total, count = 0.0, 0
-    for rows in blocks(nx if periodic else nx - 2, ny):
-        first = rows.start if periodic else rows.start + 1
-        part = height[np.arange(first - 1, first + rows.stop - rows.start + 1) % nx]
-        part = np.pad(part, ((0, 0), (1, 1)), mode="wrap") if periodic else part
+    for part, _ in blocks_with_neighbours(surface):
         inner = part[1:-1, 1:-1]
         along_x = part[2:, 1:-1] - 2.0 * inner + part[:-2, 1:-1]
         along_y = part[1:-1, 2:] - 2.0 * inner + part[1:-1, :-2]
-        values = along_x / (dx * dx) + along_y / (dy * dy)
+        values = along_x / (surface.dx * surface.dx) + along_y / (surface.dy * surface.dy)
         values = values[np.isfinite(values)]
         total += float(values @ values)
         count += values.size

@@ -148,7 +148,7 @@ class SpectrumAsperities(Source):
     ) -> Ensemble:
         surface = self.height_map(seed, realization)
         noise = _ROUNDING * math.sqrt(float(np.sum(self._waves.variance)))
-        found = asperities_on(surface, noise, self.model, "the map of the spectrum")
+        found = asperities_on(surface, noise, self.model, "the map of the spectrum", {"detrend": "none"})
         return replace(found, attrs={**found.attrs, "seed": seed, "realization": realization})
 
     @cached_property
