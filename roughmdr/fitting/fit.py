@@ -1,4 +1,4 @@
-"""Fit parameters of a scene to a measured curve."""
+"""Fit parameters of a scene, which has the path of a measured curve, to that curve."""
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
@@ -9,16 +9,18 @@ from typing import TYPE_CHECKING, Any
 from roughmdr.errors import SceneError, StoreError, warn_limits
 from roughmdr.fitting.compare import RANGES, best_model
 from roughmdr.fitting.curves import assembled, first_of, fit_each, taken_apart
-from roughmdr.fitting.fitted_scene import scene_to_fit
+from roughmdr.fitting.measured import MeasuredCurve
 from roughmdr.fitting.model import Model
-from roughmdr.fitting.parameters import Known
+from roughmdr.fitting.parameters import MACHINE, Known
 from roughmdr.fitting.search import fitted
 from roughmdr.fitting.stored import read_fit
 from roughmdr.fitting.words import curve_names, parameter_keys
 from roughmdr.runner.backend import Backend
-from roughmdr.scene import Scene
+from roughmdr.scene import Scene, read
+from roughmdr.scene.keys import entry_at, set_key
 from roughmdr.schema.keywords import with_options
 from roughmdr.schema.wording import short_repr
+from roughmdr.stages import stages_in
 from roughmdr.storage.files import NETCDF_ENDINGS, check_ending, check_writable
 from roughmdr.storage.labelled import Labelled
 from roughmdr.storage.netcdf_writing import write_netcdf
@@ -211,3 +213,42 @@ def _check_nothing_lost(out: Path, kept: list[str]) -> None:
     if lost:
         named = ", ".join(lost[:_NAMED]) + f" and {len(lost) - _NAMED} more" * (len(lost) > _NAMED)
         raise StoreError(f"{out}: holds a fit of {named} too: give another output, or --fresh to replace it")
+
+
+def scene_to_fit(source: Any, changes: Any, curve: MeasuredCurve, free: list[str]) -> tuple[Scene, MeasuredCurve]:
+    """Return the scene of a curve: the path begins as measured, and nothing is swept; SceneError where it is wrong.
+
+    A free key that is swept has its first value. The curve has a spring constant only where it is the machine's.
+    """
+    own: Any = None
+
+    def amend(table: dict[str, Any]) -> None:
+        nonlocal own
+        path, sweep = table.get("path"), table.pop("sweep", {})
+        steps: dict[str, Any] = {curve.control: [float(curve.values[0])]}
+        own = path.get("machine_stiffness") if isinstance(path, dict) else None
+        if curve.control == "remote" and (stiffness := curve.stiffness if own is None else own) is not None:
+            steps["machine_stiffness"] = stiffness
+        table["path"] = steps
+        for section in ("batch", "accuracy"):
+            table.pop(section, None)
+        if not all(stage.flat for stage in stages_in(table)):  # else there is no law but the expected one
+            table["batch"] = {"estimator": "expected"}
+        for key, entries in sweep.items() if isinstance(sweep, dict) else ():
+            if key in free:
+                _set_first(table, key, entries)
+            elif key != "mode" and (key == MACHINE or not key.startswith("path.")):
+                raise SceneError(
+                    f"sweep.{key}: a curve is of one scene; free the key, or fix it with --set {key}=VALUE"
+                )
+
+    scene = read(source, changes, amend)
+    return scene, curve if own is None and curve.control == "remote" else curve._replace(stiffness=None)
+
+
+def _set_first(table: dict[str, Any], key: str, entries: Any) -> None:
+    """Set a swept key that the scene leaves out to the first of its entries."""
+    if isinstance(entries, dict):
+        entries = entries.get("linspace", entries.get("logspace"))
+    if entry_at(key, table) is None and isinstance(entries, list) and entries:
+        set_key(table, key, entries[0])

@@ -13,10 +13,9 @@ from roughmdr.fitting.correlation import (
     correlation_of_noise,
     summed_nearby,
 )
-from roughmdr.fitting.edges import Edges, certain_edges, farthest
 from roughmdr.fitting.measured import MeasuredCurve
 from roughmdr.fitting.model import Model
-from roughmdr.fitting.profile import profiled
+from roughmdr.fitting.profile import Edges, certain_edges, farthest, profiled
 from roughmdr.fitting.residuals import POOR, relative_rms
 from roughmdr.fitting.search import Found
 from roughmdr.fitting.slopes import yielded
@@ -90,8 +89,8 @@ def uncertainty(model: Model, found: Found) -> Uncertainty:
     With a standard deviation of each load it follows from these, by the normal distribution. Without, the variance of
     each step is that of the residuals near it, for noise that is constant, proportional or otherwise uneven, with
     Student's t and the degrees of freedom of the deciding steps. Noise may be correlated: see ``correlation``.
-    Intervals end where a jump would miss a measured load: see ``edges``; or, by ``profile``, where the sum of squares
-    is too large, if it is no parabola.
+    Intervals end where a jump would miss a measured load, or where the sum of squares is too large, if it is no
+    parabola: see ``profile``.
     """
     slopes = found.slopes
     lengths = np.linalg.norm(slopes, axis=0)

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from roughmdr.ensemble.maps.plausible import IMPLAUSIBLE
+from roughmdr.ensemble.maps.words import IMPLAUSIBLE
 from roughmdr.result.hardness import hardness_lines
 from roughmdr.result.trust import trust_lines
 from roughmdr.schema.units import format_quantity

@@ -15,7 +15,7 @@ from tips import MODULUS, OFFSET, WORK, Tip
 import roughmdr as rm
 from roughmdr.errors import StoreError
 from roughmdr.fitting.columns import read_columns
-from roughmdr.fitting.fitted_scene import scene_to_fit
+from roughmdr.fitting.fit import scene_to_fit
 from roughmdr.fitting.measured import read_measured
 from roughmdr.fitting.model import Model
 from roughmdr.fitting.stored import read_fit

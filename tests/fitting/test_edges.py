@@ -9,7 +9,7 @@ from scipy.optimize import minimize
 from tips import MODULUS, OFFSET, WORK, Floats, Tip
 
 import roughmdr as rm
-from roughmdr.fitting.edges import Edges, farthest
+from roughmdr.fitting.profile import Edges, farthest
 
 
 @settings(deadline=None, max_examples=30)

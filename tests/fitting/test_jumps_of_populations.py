@@ -8,7 +8,7 @@ import pytest
 from tips import MODULUS, OFFSET, WORK, Tip
 
 import roughmdr as rm
-from roughmdr.fitting.fitted_scene import scene_to_fit
+from roughmdr.fitting.fit import scene_to_fit
 from roughmdr.fitting.jumps import jumps_at
 from roughmdr.fitting.measured import read_measured
 from roughmdr.fitting.model import Model

@@ -11,7 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from roughmdr.fitting.fitted_scene import scene_to_fit
+from roughmdr.fitting.fit import scene_to_fit
 from roughmdr.fitting.measured import read_measured
 from roughmdr.fitting.model import Model
 from roughmdr.fitting.slopes import slopes_of

@@ -14,8 +14,8 @@ from hypothesis import strategies as st
 
 from roughmdr.cli import main
 from roughmdr.ensemble.ensemble import Ensemble
-from roughmdr.ensemble.maps.plausible import implausible
 from roughmdr.ensemble.maps.resolution import radius_uncertainty, verdict
+from roughmdr.ensemble.maps.words import implausible
 from roughmdr.report.advice import advice_on
 
 SURFACE = {"source": "surface", "file": "map.npy"}

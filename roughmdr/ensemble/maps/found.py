@@ -8,9 +8,9 @@ import numpy as np
 
 from roughmdr.ensemble.ensemble import Ensemble
 from roughmdr.ensemble.maps.height_map import HeightMap, map_statistics
-from roughmdr.ensemble.maps.plausible import implausible
 from roughmdr.ensemble.maps.resolution import radius_uncertainty, warning
 from roughmdr.ensemble.maps.summits import find_summits
+from roughmdr.ensemble.maps.words import implausible
 from roughmdr.errors import RoughmdrError
 from roughmdr.schema.quantities import EntryError
 
