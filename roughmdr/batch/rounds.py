@@ -133,19 +133,25 @@ class Rounds:
         error = relative_error(moments, unmet, over_range=over_range)
         drawn_error = relative_error(moments, over_range=over_range)
         known = draws._replace(error=error, drawn_error=drawn_error) if error < math.inf else draws
-        accepted = history._replace(method=known)
         if is_enough(draws.realizations, error, asked):
-            return accepted
-        count = next_count(draws.realizations, error, asked, accuracy.max_realizations)
-        exhausted = count == draws.realizations
-        untried = history.expected is None and "expected" in self._plan.cells[cell].scene.estimators
-        if untried and (exhausted or self._is_dearer(cell, missing_count(draws.realizations, error, asked))):
-            return history._replace(method=self._method(cell, "expected", 1), draws=draws)
-        if not exhausted:
-            return history._replace(method=draws._replace(realizations=count))
+            return history._replace(method=known)
+        if further := self._further(cell, history, error, asked, accuracy.max_realizations):
+            return further
         if history.expected is not None and history.expected.error < error:
             return history._replace(method=history.expected)
-        return accepted
+        return history._replace(method=known)
+
+    def _further(self, cell: int, history: CellHistory, error: float, asked: float, most: int) -> CellHistory | None:
+        """Return the method with more realisations, or the expected law where that takes less; None where neither can
+        be.
+        """
+        draws = history.method
+        count = next_count(draws.realizations, error, asked, most)
+        untried = history.expected is None and "expected" in self._plan.cells[cell].scene.estimators
+        exhausted = count == draws.realizations
+        if untried and (exhausted or self._is_dearer(cell, missing_count(draws.realizations, error, asked))):
+            return history._replace(method=self._method(cell, "expected", 1), draws=draws)
+        return None if exhausted else history._replace(method=draws._replace(realizations=count))
 
     def _judge_quantity(
         self, cell: int, history: CellHistory, collector: Collector, choice: Choice, most: int
@@ -170,9 +176,7 @@ class Rounds:
         )
         whole, asked = method.model_error + choice.drawn(error, count), choice.standard_error(method.model_error)
         method = method._replace(error=whole if whole < math.inf else math.nan)
+        history = history._replace(method=method)
         if math.isnan(method.model_error) or is_enough(count, error, asked):
-            return history._replace(method=method)
-        more, untried = next_count(count, error, asked, most), "expected" in planned.scene.estimators
-        if untried and (more == count or self._is_dearer(cell, missing_count(count, error, asked))):
-            return history._replace(method=self._method(cell, "expected", 1), draws=method)
-        return history._replace(method=method._replace(realizations=more))
+            return history
+        return self._further(cell, history, error, asked, most) or history

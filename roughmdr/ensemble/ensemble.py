@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from roughmdr.asperity.validity import ValidityLimits, relative_loads
 from roughmdr.ensemble.maps.resolution import FORCE_PER_RADIUS
-from roughmdr.errors import OutOfRange, RoughmdrError, SceneError, ShapeError
+from roughmdr.errors import RoughmdrError, SceneError
 from roughmdr.kernels.interface import Columns
 from roughmdr.numerics.arguments import Floats
 from roughmdr.schema.arguments import check_number
@@ -157,30 +157,34 @@ class Ensemble:
     @classmethod
     def from_dataset(cls, dataset: "xr.Dataset") -> "Ensemble":
         """Return the ensemble of a dataset, in any order; SceneError names what is missing or not allowed."""
-        shape = dataset.attrs.get("shape")
-        if not isinstance(shape, str) or shape not in SHAPES:
-            raise SceneError(f"ensemble: attribute shape is {short_repr(shape)}; it must be one of {', '.join(SHAPES)}")
-        height = _column(dataset, "height", "m")
-        positions = {name: _column(dataset, name, "m") for name in ("x", "y") if name in dataset}
-        kind, parameters, shared_profile = SHAPES[shape], dict[str, Floats](), None
         try:
-            if issubclass(kind, SharedProfile):
-                columns = {name: _column(dataset, name, unit, kind.dimension) for name, unit in kind.units.items()}
-                shared_profile = kind.from_columns(columns)
-            else:
-                names = kind.parameter_set({name for name in kind.units if name in dataset})
-                along = dimensions_of(kind)
-                parameters = {name: _column(dataset, name, kind.units[name], *along) for name in names}
-                kind.check(parameters)
-        except ShapeError as error:
+            return _read(dataset).sorted()
+        except RoughmdrError as error:
             raise SceneError(f"ensemble: {error}") from None
-        sides = {name: _size(name, dataset.attrs[name]) for name in _SIDES if name in dataset.attrs}
-        warnings = dataset.attrs.get("warnings", "")
-        if not isinstance(warnings, str):
-            raise SceneError(f"ensemble: attribute warnings is {short_repr(warnings)}; it must be a text")
-        area, texts = _nominal_area(dataset.attrs, sides), tuple(warnings.splitlines())
-        attrs = {**sides, **_of_map(dataset.attrs)}
-        return cls(shape, height, parameters, area, positions, attrs, shared_profile, texts).sorted()
+
+
+def _read(dataset: "xr.Dataset") -> Ensemble:
+    shape = dataset.attrs.get("shape")
+    if not isinstance(shape, str) or shape not in SHAPES:
+        raise RoughmdrError(f"attribute shape is {short_repr(shape)}; it must be one of {', '.join(SHAPES)}")
+    height = _column(dataset, "height", "m")
+    positions = {name: _column(dataset, name, "m") for name in ("x", "y") if name in dataset}
+    kind, parameters, shared_profile = SHAPES[shape], dict[str, Floats](), None
+    if issubclass(kind, SharedProfile):
+        columns = {name: _column(dataset, name, unit, kind.dimension) for name, unit in kind.units.items()}
+        shared_profile = kind.from_columns(columns)
+    else:
+        names = kind.parameter_set({name for name in kind.units if name in dataset})
+        along = dimensions_of(kind)
+        parameters = {name: _column(dataset, name, kind.units[name], *along) for name in names}
+        kind.check(parameters)
+    sides = {name: _size(name, dataset.attrs[name]) for name in _SIDES if name in dataset.attrs}
+    warnings = dataset.attrs.get("warnings", "")
+    if not isinstance(warnings, str):
+        raise RoughmdrError(f"attribute warnings is {short_repr(warnings)}; it must be a text")
+    area, texts = _nominal_area(dataset.attrs, sides), tuple(warnings.splitlines())
+    attrs = {**sides, **_of_map(dataset.attrs)}
+    return Ensemble(shape, height, parameters, area, positions, attrs, shared_profile, texts)
 
 
 def dimensions_of(shape: type[Shape]) -> tuple[str, ...]:
@@ -201,52 +205,46 @@ def _nominal_area(attrs: dict[str, Any], sides: dict[str, float]) -> float | Non
 
 def _of_map(attrs: dict[str, Any]) -> dict[str, float | int | str]:
     """Return the attributes of summits and hills that are there: whether the surface continues, uncertainty of radii,
-    least distance, errors of hills; SceneError where one is not allowed.
+    least distance, errors of hills; RoughmdrError where one is not allowed.
     """
     model = attrs.get("asperity_model", "hills")
     if model != "hills":
-        raise SceneError(f"ensemble: attribute asperity_model is {short_repr(model)}; it must be 'hills' or absent")
-    try:
-        return {name: attrs[name] for name in ("asperity_model",) if name in attrs} | {
-            name: check_number(f"ensemble: attribute {name}", attrs[name], "1", zero=True)
-            for name in ("of_surface", "goes_on", "radius_uncertainty", "exclusion_distance", *_OF_HILLS)
-            if name in attrs
-        }
-    except OutOfRange as error:
-        raise SceneError(str(error)) from None
+        raise RoughmdrError(f"attribute asperity_model is {short_repr(model)}; it must be 'hills' or absent")
+    return {name: attrs[name] for name in ("asperity_model",) if name in attrs} | {
+        name: check_number(f"attribute {name}", attrs[name], "1", zero=True)
+        for name in ("of_surface", "goes_on", "radius_uncertainty", "exclusion_distance", *_OF_HILLS)
+        if name in attrs
+    }
 
 
 def _size(name: str, value: Any) -> float:
-    """Return a length [m] or an area [m2] of a patch; SceneError unless it is a number above 0."""
+    """Return a length [m] or an area [m2] of a patch; RoughmdrError unless it is a number above 0."""
     if isinstance(value, str):
-        raise SceneError(f"ensemble: attribute {name} is {short_repr(value)}; it must be a finite number above 0 in SI")
-    try:
-        return check_number(f"ensemble: attribute {name}", value, "in SI")
-    except OutOfRange as error:
-        raise SceneError(str(error)) from None
+        raise RoughmdrError(f"attribute {name} is {short_repr(value)}; it must be a finite number above 0 in SI")
+    return check_number(f"attribute {name}", value, "in SI")
 
 
 def _column(dataset: "xr.Dataset", name: str, unit: str, *along: str) -> Floats:
     along = along or ("asperity",)
     if name not in dataset:
-        raise SceneError(f"ensemble: variable {name!r} is missing")
+        raise RoughmdrError(f"variable {name!r} is missing")
     variable = dataset[name]
     if variable.dims != along:
-        raise SceneError(f"ensemble: {name} lies over {variable.dims}; it must lie over {along}")
+        raise RoughmdrError(f"{name} lies over {variable.dims}; it must lie over {along}")
     if variable.size == 0:
         empty = next(dimension for dimension in along if variable.sizes[dimension] == 0)
-        raise SceneError(f"ensemble: it has no {empty}; at least one is needed")
+        raise RoughmdrError(f"it has no {empty}; at least one is needed")
     if variable.dtype.kind not in "iuf":
-        raise SceneError(f"ensemble: {name} is of type {variable.dtype}; it must be numbers")
+        raise RoughmdrError(f"{name} is of type {variable.dtype}; it must be numbers")
     try:
         units = str(variable.attrs.get("units", ""))
         factor = 1.0 if units == unit else float(unit_factor(units, unit))
     except RoughmdrError as error:
-        raise SceneError(f"ensemble: units of {name}: {error}") from None
+        raise RoughmdrError(f"units of {name}: {error}") from None
     with np.errstate(over="ignore"):  # refused below
         column = np.asarray(variable.to_numpy(), dtype=np.float64) * factor
     if not np.isfinite(column).all():
         where = tuple(int(i) for i in np.argwhere(~np.isfinite(column))[0])
         place = ", ".join(f"{dimension} {i}" for dimension, i in zip(along, where, strict=True))
-        raise SceneError(f"ensemble: {name} is {column[where]} at {place}; it must be finite")
+        raise RoughmdrError(f"{name} is {column[where]} at {place}; it must be finite")
     return column

@@ -49,13 +49,9 @@ class PatchSource(Source):
         return value
 
     @model_validator(mode="after")
-    def _hard_core_has_a_distance(self) -> "PatchSource":
+    def _check_placement(self) -> "PatchSource":
         if self.placement == "hard_core" and self.min_distance is None and not self.has_usual_distance:
             raise RoughmdrError('placement = "hard_core" needs min_distance')
-        return self
-
-    @model_validator(mode="after")
-    def _vacancies_are_of_a_lattice(self) -> "PatchSource":
         if self.vacancies and self.placement != "hexagonal":
             raise EntryError("vacancies", True, 'goes with placement = "hexagonal" only')
         return self

@@ -47,7 +47,10 @@ class Columns(NamedTuple):
 def read_columns(measured: "str | Path | pd.DataFrame | xr.Dataset") -> Columns:
     """Return the columns of a measurement; StoreError where it is none or cannot be read."""
     if isinstance(measured, str | os.PathLike):
-        return _of_text(Path(measured))
+        try:
+            return _of_text(Path(measured))
+        except RoughmdrError as error:
+            raise StoreError(f"{Path(measured)}: {error}") from None
     if hasattr(measured, "data_vars"):
         return _of_dataset(measured)
     if hasattr(measured, "columns") and hasattr(measured, "itertuples"):
@@ -57,14 +60,10 @@ def read_columns(measured: "str | Path | pd.DataFrame | xr.Dataset") -> Columns:
 
 
 def _of_text(path: Path) -> Columns:
-    content = _content(path)
-    text = _decoded(content)
+    text = _decoded(_content(path))
     is_text = "\0" not in text
     lines = list(_lines(text)) if is_text else []
-    try:
-        curve = read_text(text) if is_text else read_instrument(path)
-    except RoughmdrError as error:
-        raise StoreError(f"{path}: {error}") from None
+    curve = read_text(text) if is_text else read_instrument(path)
     if curve is None and lines and not _CONTROL.search(lines[0][1]):
         with suppress(RoughmdrError):  # text of an instrument that afmformats alone knows, where it is installed
             curve = read_instrument(path)
@@ -72,7 +71,7 @@ def _of_text(path: Path) -> Columns:
         control, rows, stiffness, about = curve
         return Columns(str(path), [control, "force"], ["", ""], rows, path, stiffness, about)
     if not lines:
-        raise StoreError(f"{path}: is empty; expected a line with the names of the columns, and rows")
+        raise RoughmdrError("is empty; expected a line with the names of the columns, and rows")
     _, header = lines[0]
     separator = next((each for each in ";\t," if each in header), "")
     if separator:
@@ -88,9 +87,7 @@ def _of_text(path: Path) -> Columns:
     for place, row in zip(places, entries, strict=True):
         if len(row) != len(titles):
             hint = "; write decimal points" if separator == "," and len(row) == 2 * len(titles) else ""
-            raise StoreError(
-                f"{path}: {place}: has {len(row)} entries; the first line names {len(titles)} columns{hint}"
-            )
+            raise RoughmdrError(f"{place}: has {len(row)} entries; the first line names {len(titles)} columns{hint}")
         rows.append((place, [_with_point(entry.strip()) for entry in row]))
     return _titled(str(path), titles, rows)._replace(file=path)
 
@@ -118,11 +115,9 @@ def _content(path: Path) -> bytes:
         with path.open("rb") as file:
             content = file.read(_MAX_BYTES + 1)
     except OSError as error:
-        raise StoreError(f"{path}: cannot be read: {error.strerror}") from None
-    except RoughmdrError as error:
-        raise StoreError(f"{path}: {error}") from None
+        raise RoughmdrError(f"cannot be read: {error.strerror}") from None
     if len(content) > _MAX_BYTES:
-        raise StoreError(f"{path}: is longer than {_MAX_BYTES} bytes, the most that a measured curve can have")
+        raise RoughmdrError(f"is longer than {_MAX_BYTES} bytes, the most that a measured curve can have")
     return content
 
 
