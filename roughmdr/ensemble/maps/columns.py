@@ -4,11 +4,10 @@ import re
 
 import numpy as np
 
-from roughmdr.ensemble.maps.raw_map import RawMap, check_points
+from roughmdr.ensemble.maps.raw_map import RawMap, check_points, metres
 from roughmdr.ensemble.maps.text_table import TextTable
 from roughmdr.errors import RoughmdrError
 from roughmdr.numerics.arguments import Floats
-from roughmdr.schema.units import unit_factor
 
 _FEWEST = 9  # points of the smallest map
 _MOST_COLUMNS = 8  # most numbers in a row that is a point, x, y, z and others; a map is wider
@@ -105,11 +104,3 @@ def _titles(table: TextTable) -> tuple[tuple[str | None, str | None], tuple[int,
                 raise RoughmdrError(f"x is in {of['x']}, y in {of['y']}; both must be in one unit")
             return (of["x"] or lateral, of["z"] or height), (names.index("x"), names.index("y"), names.index("z"))
     return (lateral, height), None
-
-
-def metres(unit: str) -> float:
-    """Return a unit of coordinates [m]; RoughmdrError where it is no length."""
-    try:
-        return float(unit_factor(unit, "m"))
-    except RoughmdrError as error:
-        raise RoughmdrError(f"units of x and y: {error}") from None

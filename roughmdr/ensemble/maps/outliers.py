@@ -19,7 +19,7 @@ from roughmdr.numerics.arguments import Floats
 Treatment = Literal["undefined", "kept"]
 
 _SPIKE = 5.0
-"""Height of a spike beyond all but one of its neighbours, over their range and over ``_Steps.large``."""
+"""Height of a spike beyond all but one of its neighbours, over their range and over a large step of the map."""
 _FEWEST, _TIMES = 10, 5.0
 """Numbers of points with one value that chance does not explain: the least, and the least over those of next values."""
 _JUMP = 2.5
@@ -39,13 +39,6 @@ _CLIPPED = (
     "flat as that"
 )
 _REMEDY = 'outliers = "undefined" leaves them out, outliers = "kept" takes them as they are'
-
-
-class _Steps(NamedTuple):
-    """Differences of neighbours that are not equal, in magnitude."""
-
-    median: float
-    large: float  # 95 % quantile of Gaussian steps
 
 
 class _Finding(NamedTuple):
@@ -129,13 +122,13 @@ def _marks(height: Floats, unit: str) -> Iterator[_Finding]:
         low, high = _ends(height, ())
         low_of_rest, high_of_rest = _ends(height, (low, high))
         candidates = dict.fromkeys([low, high, 0.0, float(levels[np.argmax(counts)])])
-        steps = _steps(height, candidates)
+        median_step = _step(height, 0.5, candidates)
         apart = {low: low_of_rest - low, high: high - high_of_rest}
         for value in candidates:
             points = np.flatnonzero(height == value)
             detached = 0.0 < high_of_rest - low_of_rest < apart.get(value, 0.0)
             many = _is_frequent(value, points.size, levels, counts, height.size)
-            if points.size and (detached or (many and _jump(height, points, value) > _JUMP * steps.median)):
+            if points.size and (detached or (many and _jump(height, points, value) > _JUMP * median_step)):
                 yield _Finding(f"{_at(height, points)} exactly {value:g} {unit}, far from neighbouring heights", points)
                 height.flat[points] = np.nan
                 break
@@ -177,7 +170,7 @@ def _spikes(height: Floats, unit: str, *, periodic: bool) -> Iterator[_Finding]:
     """Yield the points, single or in squares of four, that stand out above or below their neighbours, all but one, by
     more than the range of these and more than other steps of the map.
     """
-    least = _SPIKE * _steps(height, ()).large
+    least = _SPIKE * _LARGE * _step(height, 0.8)  # robust to spikes at up to 10 % of the points
     if not least > 0.0:
         return
     nx, ny = height.shape
@@ -247,16 +240,15 @@ def _is_frequent(value: float, number: int, levels: Floats, counts: NDArray[np.i
     return bool(number > _TIMES * float(np.mean(counts[others])))
 
 
-def _steps(height: Floats, without: Iterable[float]) -> _Steps:
-    """Return the steps between neighbours in a sample of rows, without those at given values."""
+def _step(height: Floats, quantile: float, without: Iterable[float] = ()) -> float:
+    """Return a quantile of the differences of neighbours that are not equal, in magnitude, in a sample of rows; without
+    those at given values, and 0 where there are none.
+    """
     rows = np.arange(0, height.shape[0] - 1, -(-height.size // _SAMPLE))
     part, after = (np.where(np.isin(each, list(without)), np.nan, each) for each in (height[rows], height[rows + 1]))
     steps = np.abs(np.concatenate([(after - part).ravel(), np.diff(part, axis=1).ravel()]))
     steps = steps[(steps > 0.0) & np.isfinite(steps)]
-    if not steps.size:
-        return _Steps(0.0, 0.0)
-    median, most = np.quantile(steps, [0.5, 0.8]).tolist()  # robust to spikes at up to 10 % of the points
-    return _Steps(median, _LARGE * most)
+    return float(np.quantile(steps, quantile)) if steps.size else 0.0
 
 
 def _beside(height: Floats, points: NDArray[np.intp]) -> Iterator[Floats]:

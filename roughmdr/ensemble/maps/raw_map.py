@@ -75,6 +75,14 @@ class SizeReader(Reader):
         return f"{self._side}; or a list of two, along x and y; or across a row of the file, and down its rows"
 
 
+def metres(unit: str, of: str = "x and y") -> float:
+    """Return a unit [m]; RoughmdrError, which names what it is of, where it is no length."""
+    try:
+        return float(unit_factor(unit, "m"))
+    except RoughmdrError as error:
+        raise RoughmdrError(f"units of {of}: {error}") from None
+
+
 def check_points(shape: tuple[int, ...]) -> None:
     """Raise RoughmdrError where a map of this shape has no inner point."""
     if len(shape) != 2 or min(shape) < 3:

@@ -15,11 +15,10 @@ from roughmdr.ensemble.from_file import open_dataset
 from roughmdr.ensemble.maps.height_map import HeightMap, blocks
 from roughmdr.ensemble.maps.instrument import read_instrument
 from roughmdr.ensemble.maps.outliers import Treatment, leave_out_outliers
-from roughmdr.ensemble.maps.raw_map import RawMap, Size, SizeReader, check_points, spacings, spacings_of_sides
+from roughmdr.ensemble.maps.raw_map import RawMap, Size, SizeReader, check_points, metres, spacings, spacings_of_sides
 from roughmdr.ensemble.maps.text_map import read_text, refuse_channel
 from roughmdr.errors import RoughmdrError
 from roughmdr.numerics.arguments import Floats
-from roughmdr.schema.units import unit_factor
 from roughmdr.storage.files import NETCDF_ENDINGS
 
 if TYPE_CHECKING:
@@ -93,12 +92,10 @@ def _reader(path: Path) -> Callable[[Path, str | None], RawMap]:
 
 def _factor(raw: RawMap, unit: str | None) -> float:
     """Return one unit of the heights in metres."""
-    try:
-        factor = float(unit_factor(raw.unit or unit or "m", "m"))
-        if unit is not None and float(unit_factor(unit, "m")) != factor:
-            raise RoughmdrError(f"the file says itself that heights are in {raw.unit}; leave out unit = {unit!r}")
-    except RoughmdrError as error:
-        raise RoughmdrError(f"units of the heights: {error}") from None
+    factor = metres(raw.unit or unit or "m", "the heights")
+    if unit is not None and metres(unit, "the heights") != factor:
+        said = f"the file says itself that heights are in {raw.unit}; leave out unit = {unit!r}"
+        raise RoughmdrError(f"units of the heights: {said}")
     return factor
 
 
@@ -180,10 +177,7 @@ def _spacing(dataset: "xr.Dataset", dim: str) -> float:
     coordinate = dataset[dim]
     if coordinate.dtype.kind not in "iuf":
         raise RoughmdrError(f"the coordinate {dim} is of type {coordinate.dtype}; it must be numbers")
-    try:
-        factor = float(unit_factor(_unit_of(coordinate), "m"))
-    except RoughmdrError as error:
-        raise RoughmdrError(f"units of {dim}: {error}") from None
+    factor = metres(_unit_of(coordinate), dim)
     with np.errstate(all="ignore"):  # steps that are not finite are not even
         steps = np.diff(np.asarray(coordinate.to_numpy(), dtype=np.float64) * factor)
         mean = float(np.mean(steps))

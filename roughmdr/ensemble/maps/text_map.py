@@ -6,9 +6,9 @@ from pathlib import Path
 
 import numpy as np
 
-from roughmdr.ensemble.maps.columns import is_of_points, map_of_points, metres
+from roughmdr.ensemble.maps.columns import is_of_points, map_of_points
 from roughmdr.ensemble.maps.instrument import read_instrument
-from roughmdr.ensemble.maps.raw_map import RawMap
+from roughmdr.ensemble.maps.raw_map import RawMap, metres
 from roughmdr.ensemble.maps.text_header import Said, read_header
 from roughmdr.ensemble.maps.text_table import TextTable, read_table, text_of
 from roughmdr.errors import RoughmdrError
