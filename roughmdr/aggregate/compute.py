@@ -1,7 +1,7 @@
 """The law of an ensemble along a path of separations: which totals the asked variables need."""
 
 import math
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 
 import numpy as np
 
@@ -48,26 +48,53 @@ def compute(problem: Problem, path: LoadingPath, variables: Iterable[str]) -> Lo
         from roughmdr.aggregate.coupled import law_of_coupled
 
         return law_of_coupled(problem, path, names)
-    ensemble, adhesion = problem.ensemble, problem.adhesion
-    rows = {totals.ERROR, totals.FORCE, totals.AREA, *(totals.TOTAL_INDEX[name] for name in names)}
-    rows |= {totals.COUNT} if are_few(ensemble) else set()
+    rows = rows_for(problem, names)
 
     def radius_at(separation: float) -> Floats:
-        there = LoadingPath.along(np.array([separation]), unload=False, adhesive=adhesion.work > 0.0)
+        there = LoadingPath.along(np.array([separation]), unload=False, adhesive=problem.adhesion.work > 0.0)
         _, (radius, _), _ = problem.sums(there, {totals.AREA})
         return np.asarray(radius)
 
     if coupling := coupling_in(problem):
         found = shift(of_independent(problem), path.separation, coupling)
         shifted = LoadingPath(found.separation, no_memory(found.separation))
-        total, (radius, force), visits = problem.sums(shifted, rows | {totals.STIFFNESS})
+        total, closest, visits = problem.sums(shifted, rows | {totals.STIFFNESS})
         couple(total, found)
     else:
-        total, (radius, force), visits = problem.sums(path, rows)
+        total, closest, visits = problem.sums(path, rows)
+    factor = 1.0 - coupling * float(total[totals.STIFFNESS, np.argmin(path.separation)]) if coupling else 1.0
+    result = law_of_totals(problem, path, names, total, closest, radius_at, factor=factor)
+    return result._replace(visits=visits, pull_off=pull_off_of(problem, path, total[totals.FORCE]))
+
+
+def rows_for(problem: Problem, names: list[str]) -> set[int]:
+    """Return the rows of the totals that variables and the model error need."""
+    rows = {totals.ERROR, totals.FORCE, totals.AREA, *(totals.TOTAL_INDEX[name] for name in names)}
+    return rows | ({totals.COUNT} if are_few(problem.ensemble) else set())
+
+
+def law_of_totals(
+    problem: Problem,
+    path: LoadingPath,
+    names: list[str],
+    total: Floats,
+    closest: Floats,
+    radius_at: Callable[[float], Floats],
+    *,
+    factor: float = 1.0,
+    plasticity_error: Floats | None = None,
+) -> LoadSeparation:
+    """Return the law of independent contacts from their totals [row, step], with the error of the model.
+
+    ``closest`` has the radius [m] and the force [N] of each asperity where the flat is closest, [2, asperity];
+    ``radius_at`` as for ``neighbours_error``, ``factor`` for ``sample_of``. OutOfRange as ``compute``.
+    """
+    ensemble, adhesion, validity = problem.ensemble, problem.adhesion, problem.validity
+    radius, force = closest
     total[totals.AREA] *= ensemble.area_share
     area = math.nan if ensemble.nominal_area is None else ensemble.nominal_area
-    modulus, validity = problem.effective_modulus, problem.validity
-    givens = Givens(modulus, adhesion.work, ensemble.spread, area, float(radius.max(initial=0.0)))
+    largest = float(radius.max(initial=0.0))
+    givens = Givens(problem.effective_modulus, adhesion.work, ensemble.spread, area, largest)
     assumptions = Assumptions(
         ensemble.validity_limits(radius),
         np.count_nonzero(radius) * validity.contact_error if adhesion.model == "jkr" and radius.any() else 0.0,
@@ -76,15 +103,12 @@ def compute(problem: Problem, path: LoadingPath, variables: Iterable[str]) -> Lo
         ensemble.origin,
         _overlap(ensemble, radius),
         neighbours_error=neighbours_error(ensemble, path, total, radius_at) if problem.interaction is None else None,
+        plasticity_error=plasticity_error,
     )
-    result = LoadSeparation.of(
-        total, names, path.separation, givens, assumptions, visits, validity.tabor, adhesion.model
-    )
+    result = LoadSeparation.of(total, names, path.separation, givens, assumptions, 0, validity.tabor, adhesion.model)
     crowded = crowd_warnings(assumptions.neighbours_error, total[totals.AREA] / area)
     warnings = (*ensemble.warnings, *([_UNCOUPLED_HILLS] if ensemble.origin == "hills" else []), *crowded)
-    pull_off = pull_off_of(problem, path, total[totals.FORCE])
-    factor = 1.0 - coupling * float(total[totals.STIFFNESS, np.argmin(path.separation)]) if coupling else 1.0
-    return result._replace(warnings=warnings, pull_off=pull_off, **sample_of(ensemble, force, radius, factor))
+    return result._replace(warnings=warnings, **sample_of(ensemble, force, radius, factor))
 
 
 def _overlap(ensemble: Ensemble, radius: Floats) -> float:

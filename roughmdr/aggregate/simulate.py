@@ -40,11 +40,11 @@ def simulate(problem: Problem, path: LoadingPath | MachinePath, variables: Itera
             from roughmdr.aggregate.coupled import law_on_machine
 
             law, separation = law_on_machine(problem, path, of_contacts, clear)
-            return _with_place(law, separation, path).only(names)
+            return with_place(law, separation, path).only(names)
         lossy = not LOSSES.isdisjoint(names)
         separation, jumps = _separations(problem, path, jumps=lossy)
         way = np.where(np.isinf(separation), clear, separation)
-        law = _with_place(compute(problem, _way(way, path), of_contacts), separation, path)
+        law = with_place(compute(problem, _way(way, path), of_contacts), separation, path)
         if jumps and lossy:
             lost = machine_loss(
                 path.machine, jumps, way, clear, lambda h, names: compute(problem, _way(h, path), names)
@@ -60,8 +60,8 @@ def simulate(problem: Problem, path: LoadingPath | MachinePath, variables: Itera
     return under(path, names)
 
 
-def _with_place(law: LoadSeparation, separation: Floats, path: MachinePath) -> LoadSeparation:
-    """Return the law with the separation at each step, inf where there is none, and the position of the machine."""
+def with_place(law: LoadSeparation, separation: Floats, path: MachinePath) -> LoadSeparation:
+    """Return the law with the separation [m] at each step, inf where there is none, and the position of the machine."""
     place = {"separation": np.where(np.isinf(separation), np.nan, separation), "remote": path.demand}
     return law._replace(variables=law.variables | place)
 

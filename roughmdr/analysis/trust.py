@@ -3,7 +3,7 @@
 from typing import TYPE_CHECKING
 
 from roughmdr.errors import StoreError
-from roughmdr.model_error.parts import PARTS
+from roughmdr.model_error.parts import PARTS, PLASTIC
 from roughmdr.report.contacts import sample_of_result
 from roughmdr.result.curves import result_of
 from roughmdr.result.trust import trust_of_result
@@ -20,7 +20,7 @@ def trust(dataset: "xr.Dataset") -> "xr.Dataset":
     result = result_of(dataset)
     if missing := [name for name in _NAMES if name not in dataset]:
         raise StoreError(f"trust needs the variables {', '.join(missing)}, which this result does not hold")
-    found = dataset[[name for name in (*_NAMES, "sampling_error", "area_sampling_error") if name in dataset]]
+    found = dataset[[name for name in (*_NAMES, PLASTIC, "sampling_error", "area_sampling_error") if name in dataset]]
     if "realization" in found.dims:
         found = found.max("realization", keep_attrs=True)
     lines = [*trust_of_result(result), *under("sample", sample_of_result(result).splitlines())]

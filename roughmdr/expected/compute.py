@@ -5,13 +5,13 @@ in their normal scores, of increasing order until the result no longer changes.
 """
 
 import math
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 
 import numpy as np
 
 from roughmdr.aggregate import LoadingPath, LoadSeparation
 from roughmdr.aggregate.mean_field import Shift, couple, coupling_of, mean_inverse_distance, shift
-from roughmdr.aggregate.tabor import jkr_validity
+from roughmdr.aggregate.tabor import JkrValidity, jkr_validity
 from roughmdr.aggregate.totals import (
     AREA,
     CONDUCTANCE,
@@ -24,6 +24,7 @@ from roughmdr.aggregate.totals import (
     STIFFNESS,
     TOTAL_INDEX,
 )
+from roughmdr.asperity.validity import ValidityLimits
 from roughmdr.ensemble import Ensemble, Source
 from roughmdr.ensemble.nodes import Nodes, Rule
 from roughmdr.errors import OutOfRange
@@ -97,26 +98,50 @@ def compute(
             f"the contact of an asperity is not representable: {problem.kernels.name} with effective modulus "
             f"{effective_modulus:g} Pa, {problem.adhesion}, separation down to {closest:g} m"
         )
-    radii, area = _largest_radii(nodes, closest, count), source.nominal_area
-    limits = as_ensemble(source, source.nodes(*chosen.rules)).validity_limits(radii)
-    model = problem.adhesion.model
+    limits = as_ensemble(source, source.nodes(*chosen.rules)).validity_limits
+    largest_radii = _largest_radii(nodes, closest, count)
+    law = law_of_means(problem._replace(path=path), names, total, largest_radii, limits, validity, interaction)
+    warnings = warnings_of(float(total[ERROR].max()) / largest if largest > 0.0 else 0.0, error_of_others)
+    pull_off = pull_off_of(problem, split, chosen, total[FORCE])
+    return law._replace(visits=products, warnings=(*warnings, *law.warnings), pull_off=pull_off)
+
+
+def law_of_means(
+    problem: MeanProblem,
+    names: list[str],
+    total: Floats,
+    radii: Floats,
+    limits: Callable[[Floats], ValidityLimits],
+    validity: JkrValidity,
+    interaction: Interaction | None = None,
+    *,
+    plasticity_error: Floats | None = None,
+) -> LoadSeparation:
+    """Return the law along the path from totals of all asperities [row, step], with the error of the model.
+
+    ``radii`` [m] are the largest of each node, whose ``limits`` of validity are the asperities'.
+    """
+    source, adhesion, area = problem.source, problem.adhesion, problem.source.nominal_area
     nominal_area = math.nan if area is None else area
-    givens = Givens(effective_modulus, adhesion.work, source.sigma, nominal_area, float(radii.max(initial=0.0)))
+    work, largest = adhesion.work, float(radii.max(initial=0.0))
+    givens = Givens(problem.effective_modulus, work, source.sigma, nominal_area, largest)
     equal_radii = np.sqrt(total[AREA].max(keepdims=True) / math.pi)  # one contact in place of all alike
     overlap = poisson_overlap(equal_radii, nominal_area)
     contacts = float(total[COUNT].max())
-    jkr_error = contacts * validity.contact_error if model == "jkr" and contacts > 0.0 else 0.0
+    jkr_error = contacts * validity.contact_error if adhesion.model == "jkr" and contacts > 0.0 else 0.0
     assumptions = Assumptions(
-        limits,
+        limits(radii),
         jkr_error,
         origin="summits" if source.of_surface else "asperities",
         overlap=overlap,
         neighbours_error=_neighbours_error(source, total) if interaction is None else None,
+        plasticity_error=plasticity_error,
     )
     crowded = crowd_warnings(assumptions.neighbours_error, total[AREA] / nominal_area)
-    warnings = (*warnings_of(float(total[ERROR].max()) / largest if largest > 0.0 else 0.0, error_of_others), *crowded)
-    law = LoadSeparation.of(total, names, path.separation, givens, assumptions, products, validity.tabor, model)
-    return law._replace(warnings=warnings, pull_off=pull_off_of(problem, split, chosen, total[FORCE]))
+    law = LoadSeparation.of(
+        total, names, problem.path.separation, givens, assumptions, 0, validity.tabor, adhesion.model
+    )
+    return law._replace(warnings=tuple(crowded))
 
 
 def _neighbours_error(source: Source, total: Floats) -> Floats | None:

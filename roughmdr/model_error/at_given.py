@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roughmdr.model_error.at_force import NAMES, QUANTITIES, RELEASING, by_range, interaction_along, relative_at_force
-from roughmdr.model_error.parts import PARTS
+from roughmdr.model_error.parts import PARTS, PLASTIC
 from roughmdr.numerics.arguments import Floats
 from roughmdr.variables import ORIGINS, SEPARATION
 
@@ -22,7 +22,7 @@ _H = SEPARATION.name
 STATED, _BY_JKR = "model_error_curve", "adhesion_range_error"
 ALWAYS = (*PARTS, "largest_contact_fraction", "asperity_origin")
 NUMBERS = (*ALWAYS, "grid_points", "avalanche_count", "tabor_number")
-"""Numbers of a run that its errors follow from; those beside ``ALWAYS`` are known of coupled contacts alone."""
+"""Numbers of a run that its errors follow from; those beside ``ALWAYS`` are known of some contacts alone."""
 _MOST = 0.9
 """Largest relative error that a value is corrected for: of a value that is too small by more nothing is left."""
 
@@ -81,7 +81,7 @@ def _relative_errors(
     """
     origin, grid = numbers["asperity_origin"], numbers["grid_points"]
     interaction, by_jkr, most = (numbers[name] for name in ("interaction_error", _BY_JKR, "largest_contact_fraction"))
-    others = np.add.reduce([numbers[name] for name in PARTS if name not in ("interaction_error", _BY_JKR)])
+    others = _others(numbers)
     fraction = np.where(np.isnan(fraction), np.where(touching, most, 0.0), fraction)
     foreseen = interaction_along(interaction, fraction, most, origin, grid)
     foreseen += np.where(touching, others + by_jkr, 0.0)
@@ -97,16 +97,23 @@ def _relative_errors(
 def largest_at_force(numbers: Mapping[str, Any]) -> dict[str, float]:
     """Return the largest relative errors of quantities at given force [1], by their names: NaN where not known.
 
-    ``numbers`` are those of one run or arrays over runs, by name; nothing is told without all that errors follow from.
+    ``numbers`` are those of one run or arrays over runs, by name; nothing is told without all that errors follow from,
+    nor of contacts that yield: the errors are those of elastic ones.
     """
-    if not numbers.keys() >= {*ALWAYS}:
+    if PLASTIC in numbers or not numbers.keys() >= {*ALWAYS}:
         return {}
     of = {name: np.asarray(numbers.get(name, np.nan), dtype=np.float64)[..., None] for name in NUMBERS}
-    others = np.add.reduce([of[name] for name in PARTS if name not in ("interaction_error", _BY_JKR)])
+    others = _others(of)
     known = (of[name] for name in ("asperity_origin", "grid_points"))
     by_jkr, none = by_range(of[_BY_JKR], of["tabor_number"], np.ones(1)), np.ones(1)
     found = relative_at_force(of["interaction_error"], of["largest_contact_fraction"], others, by_jkr, none, *known)
     return {name: float(np.fmax.reduce(each, axis=None)) for name, each in zip(NAMES, found, strict=True)}
+
+
+def _others(numbers: Mapping[str, Floats]) -> Floats:
+    """Return the errors by all but interaction and the range of adhesion."""
+    parts = [numbers[name] for name in PARTS if name not in ("interaction_error", _BY_JKR)]
+    return np.asarray(np.add.reduce(parts))
 
 
 def first_of(names: Sequence[str], among: Collection[str]) -> str:

@@ -26,6 +26,9 @@ Etsion, J. Appl. Mech. 69 (2002) 657).
 
 _SLACK = 1.01  # a path that ends at this contact fraction is trusted all along
 
+PLASTIC = "plasticity_error"
+"""The part that contacts have which yield."""
+
 PARTS = {
     "interaction_error": "asperities that do not feel each other, or are coupled only so far",
     "slope_error": "slopes that are not small",
@@ -35,6 +38,9 @@ PARTS = {
     "border_error": "what the border of a map cuts of its hills, or leaves out of its summits",
 }
 """The parts of the model error, by their names in results."""
+
+ALL_PARTS = PARTS | {PLASTIC: "the model of yielding, from which others differ"}
+"""These parts, and the one that only contacts which yield have."""
 
 
 class Assumptions(NamedTuple):
@@ -57,6 +63,9 @@ class Assumptions(NamedTuple):
     """The error of their conductance; None for independent ones."""
     neighbours_error: Floats | None = None
     """The error of independent ones from their distances, at each step; None to take it from the contact fraction."""
+    plasticity_error: Floats | None = None
+    """The error of the force by the model of contacts that yield, over the largest force, at each step; None for
+    elastic ones."""
 
 
 class ModelError(NamedTuple):
@@ -65,7 +74,7 @@ class ModelError(NamedTuple):
     curve: Floats
     """The error at each step; NaN where the nominal area is not known."""
     parts: dict[str, float]
-    """The largest of each of ``PARTS`` over the steps."""
+    """The largest of each of ``PARTS`` over the steps; ``PLASTIC`` where contacts yield."""
     largest_fraction: float
     """The largest contact fraction; NaN where the nominal area is not known."""
     trusted_separation: float
@@ -76,12 +85,14 @@ class ModelError(NamedTuple):
     """Share of the contacts that reach into a neighbour's; NaN where it is not known."""
     origin: Origin = "asperities"
     """Where the asperities come from."""
+    largest: float = math.nan
+    """The largest error, with those over the largest force as they are; NaN where the nominal area is not known."""
 
     @property
     def named(self) -> dict[str, float]:
         """The largest error over the steps and all that describes it, by their names in results."""
         return {
-            "model_error": math.nan if math.isnan(self.largest_fraction) else float(np.nanmax(self.curve, initial=0.0)),
+            "model_error": self.largest,
             **self.parts,
             "overlap_fraction": self.overlap,
             "largest_contact_fraction": self.largest_fraction,
@@ -95,8 +106,10 @@ class ModelError(NamedTuple):
     ) -> "ModelError":
         """Return the error along a path: separation [m], force [N] and contact fraction at each step.
 
-        The parts add up, each and all to at most 1, the whole force; those of JKR are over the largest force. Where
-        the force is 0 only the error by interaction is left: of contacts that push and pull, or that JKR makes late.
+        The parts add up, each and all to at most 1, the whole force; those of JKR are over the largest force. So is
+        that of yielding where the flat has been lower, or contacts pull, but along the path it is over the force.
+        Where the force is 0 only the error by interaction is left: of contacts that push and pull, or that JKR makes
+        late.
         """
         limits, largest = assumptions.limits, float(np.nanmax(np.abs(force), initial=0.0))
         constant = {
@@ -106,6 +119,13 @@ class ModelError(NamedTuple):
             "resolution_error": assumptions.resolution_error,
             "border_error": assumptions.border_error,
         }
+        others, plastic, stated = sum(constant.values()), np.zeros(()), np.zeros(())
+        if (by_yielding := assumptions.plasticity_error) is not None:
+            at_step = np.divide(by_yielding * largest, np.abs(force), out=np.zeros_like(force), where=force != 0.0)
+            plastic = np.minimum(at_step, 1.0)
+            loads = (separation <= np.minimum.accumulate(separation)) & (force.min() >= 0.0)
+            stated = np.where(loads, plastic, np.minimum(by_yielding, 1.0))
+            constant[PLASTIC] = float(stated.max(initial=0.0))
         if contact_fraction is None:
             curve = np.where(force != 0.0, math.nan, 0.0)
             nothing = {"interaction_error": math.nan, **constant}
@@ -116,7 +136,10 @@ class ModelError(NamedTuple):
             interaction = interaction_error(contact_fraction, coefficients) if known is None else np.minimum(known, 1.0)
         else:
             interaction = np.where(np.isnan(force), math.nan, coupled)
-        curve = np.minimum(interaction + np.where(force != 0.0, sum(constant.values()), 0.0), 1.0)
+        curve = np.minimum(interaction + np.where(force != 0.0, others + plastic, 0.0), 1.0)
+        errors = curve
+        if by_yielding is not None:
+            errors = np.minimum(interaction + np.where(force != 0.0, others + stated, 0.0), 1.0)
         if coupled is None:
             trusted = interaction <= interaction_error(np.array(_SLACK * TRUSTED_FRACTION), coefficients)
         else:  # the error of hills is the same at every contact fraction
@@ -129,4 +152,5 @@ class ModelError(NamedTuple):
             float(beyond.max()) if beyond.size else math.nan,
             assumptions.overlap,
             assumptions.origin,
+            float(np.nanmax(errors, initial=0.0)),
         )

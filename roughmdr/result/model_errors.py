@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from roughmdr.model_error.at_given import ALWAYS, FORCES, NUMBERS, STATED, errors_at, first_of, largest_at_force
+from roughmdr.model_error.parts import PLASTIC
 from roughmdr.numerics.arguments import Floats
 from roughmdr.result.curves import Read
 from roughmdr.result.view import Leg, ResultView
@@ -29,8 +30,11 @@ def attributes(name: str, given: str) -> dict[str, str]:
 
 
 def known_in(result: ResultView, curves: Collection[str], needed: Collection[str] = ALWAYS) -> list[str]:
-    """Return the names of ``curves`` whose error is known: none under a body, on a lateral path, without a force."""
-    told = set(result.variables) >= {*needed} and result.flat and result.control != LATERAL.name
+    """Return the names of ``curves`` whose error is known: of elastic contacts under a flat, with a force, not on a
+    lateral path.
+    """
+    elastic = PLASTIC not in result.variables
+    told = elastic and set(result.variables) >= {*needed} and result.flat and result.control != LATERAL.name
     bare = {_bare(name): name for name in curves if _bare(name) in WITH_MODEL_ERROR}
     return list(bare.values()) if told and not set(FORCES).isdisjoint(bare) and _H in bare else []
 
@@ -115,7 +119,7 @@ def errors_along(result: ResultView) -> dict[str, Array]:
 
 def largest_of_result(result: ResultView, cell: tuple[int, ...] = ()) -> dict[str, float]:
     """Return ``largest_at_force`` of all runs of a result, or of a cell; nothing under a body that is no flat."""
-    names = [name for name in NUMBERS if name in result.variables] if result.flat else []
+    names = [name for name in (*NUMBERS, PLASTIC) if name in result.variables] if result.flat else []
     return largest_at_force({name: result.variables[name].values[cell] for name in names})
 
 

@@ -18,14 +18,14 @@ from roughmdr.model_error.interaction import (
     Coefficients,
     interaction_error,
 )
-from roughmdr.model_error.parts import PARTS, TRUSTED_ERROR, TRUSTED_FRACTION
+from roughmdr.model_error.parts import ALL_PARTS, PARTS, PLASTIC, TRUSTED_ERROR, TRUSTED_FRACTION
 from roughmdr.numerics.arguments import Floats
 from roughmdr.result.hardness import hardness_lines
 from roughmdr.result.view import ResultView
 from roughmdr.schema.units import format_quantity
 from roughmdr.schema.wording import under
 from roughmdr.stages import stages_in
-from roughmdr.variables import LATERAL, YIELDING
+from roughmdr.variables import LATERAL, YIELDED, YIELDING
 
 _TOLD = 0.01  # parts of the model error below this are not mentioned
 _TINY = 1e-6
@@ -33,12 +33,16 @@ _ROUNDING = 1e-9
 """Relative difference within which an error counts as that of its contact fraction."""
 _NO_AREA = "not known: the asperities have no nominal area, so that nothing tells how near they are to each other"
 
+_PULL_OFF_OF_DENTS = (
+    "the pull-off force itself by an unknown amount: its dents are smooth, and real ones pull less, so that it is an "
+    "upper bound"
+)
 _OPENINGS = {
     None: "asperities are independent: force at given separation off by",
     "mean_field": "asperities feel each other's mean displacement only: force at given separation off by",
 }
+_BESIDES = {PLASTIC, "grid_points", "asperity_origin"}
 _NAMES = {"model_error", *PARTS, "largest_contact_fraction", "trusted_separation", "overlap_fraction"}
-_BESIDES = {"grid_points", "asperity_origin"}
 _BY_FRACTION = {"interaction_error", "largest_contact_fraction", "overlap_fraction"}
 _AT_PULL_OFF = "pull_off_contact_fraction"
 
@@ -66,8 +70,8 @@ def trust_lines(
     largest = known["largest_contact_fraction"]
     others = [
         f"{reason}: about {_percent(known[name].max())}"
-        for name, reason in PARTS.items()
-        if name != "interaction_error" and known[name].max(initial=0.0) >= _TOLD
+        for name, reason in ALL_PARTS.items()
+        if name != "interaction_error" and name in known and known[name].max(initial=0.0) >= _TOLD
     ]
     if not largest.size:
         yield "contact", _NO_AREA
@@ -99,7 +103,7 @@ def trust_lines(
         yield "model error", f"{_OPENINGS[interaction]} {errors[0]}"
         yield from (("", f"and by {error}") for error in errors[1:])
         if len(places) > 1:
-            yield "", _pull_off_error(tension)
+            yield "", _PULL_OFF_OF_DENTS if PLASTIC in numbers else _pull_off_error(tension)
     yield from under("", [*at_force, *others])
     yield "trust", _trust(known, coefficients, interaction)
     lone = known["interaction_error"].max() == 0.0
@@ -124,7 +128,7 @@ def trust_of_result(result: ResultView) -> Iterator[tuple[str, str]]:
         )
     else:
         yield "trust", "not known: the result was computed by a version that did not estimate the error of its model"
-    yield from hardness_lines({name: result.known(name) for name in YIELDING})
+    yield from hardness_lines({name: result.known(name) for name in (*YIELDING, *YIELDED)})
 
 
 def _at_force(numbers: Numbers, *, asperities: bool) -> list[str]:
@@ -147,8 +151,10 @@ def _has_summits(table: dict[str, Any]) -> bool:
 
 
 def pull_off_error_of(result: ResultView) -> str:
-    """Return in words the error of the pull-off force by independence; empty where that is not known."""
+    """Return in words the error of the pull-off force by independence; empty where nothing is known of it."""
     tension = _at_pull_off(result)
+    if tension.size and PLASTIC in result.variables:
+        return _PULL_OFF_OF_DENTS
     if not tension.size or result.attrs.get("interaction") == "pairwise":
         return ""
     known = {name: result.known(name) for name in _BY_FRACTION}
@@ -181,7 +187,7 @@ def _neighbours(known: dict[str, Floats]) -> str:
 
 def _trust(known: dict[str, Floats], coefficients: Coefficients | None, interaction: str | None) -> str:
     """Return in words the error of the force, and the range where it holds."""
-    parts = {name: float(known[name].max(initial=0.0)) for name in PARTS}
+    parts = {name: float(known[name].max(initial=0.0)) for name in ALL_PARTS if name in known}
     place, rest, beyond = "along the whole path", "", known["trusted_separation"]
     if beyond.size:
         whole = sum(parts.values())
@@ -194,7 +200,7 @@ def _trust(known: dict[str, Floats], coefficients: Coefficients | None, interact
     error = sum(parts.values())
     if error < 1.0:
         return f"force within about {_percent(error)} {place}{rest}"
-    return f"none: the force may be off by all of it, because of {PARTS[max(PARTS, key=parts.__getitem__)]}"
+    return f"none: the force may be off by all of it, because of {ALL_PARTS[max(parts, key=parts.__getitem__)]}"
 
 
 def _coupling(known: dict[str, Floats], summits: bool) -> str:
@@ -218,7 +224,7 @@ def _coupling(known: dict[str, Floats], summits: bool) -> str:
 
 def _trust_coupled(known: dict[str, Floats], summits: bool) -> str:
     """Return in words the error of the force of coupled asperities, and the range where it holds."""
-    parts = {name: float(known[name].max(initial=0.0)) for name in PARTS}
+    parts = {name: float(known[name].max(initial=0.0)) for name in ALL_PARTS if name in known}
     whole, beyond, rest = sum(parts.values()), known["trusted_separation"], ""
     if beyond.size and not summits:  # flanks of summits cost more than that from first touch on
         lowest = format_quantity(float(beyond.max()), "m")

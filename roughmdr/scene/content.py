@@ -64,7 +64,7 @@ class _Sections(Section):
 
     def reason_against(self, estimator: str) -> str:
         """Return why the estimator "stratified" or "expected" is impossible; empty where it is possible."""
-        if reason := next(filter(None, (stage.reason_against(estimator) for stage in self.stages)), ""):
+        if reason := next(filter(None, (stage.reason_against(self, estimator) for stage in self.stages)), ""):
             return reason
         if estimator == "expected" and self.needs_positions:
             return "asperities that feel each other in pairs have positions, which the expected law does not know"

@@ -69,7 +69,7 @@ class Reference(Stage):
         if scene.path.control not in _CONTROLS:
             raise mismatch("reference", f"goes with path.{', path.'.join(_CONTROLS)}, not with path.{scene.path.key}")
 
-    def reason_against(self, estimator: str) -> str:
+    def reason_against(self, scene: Given, estimator: str) -> str:
         """Return that the expected law has no surface to press."""
         if estimator != "expected":
             return ""

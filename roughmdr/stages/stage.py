@@ -13,6 +13,7 @@ from roughmdr.stages.given_scene import Given
 
 if TYPE_CHECKING:
     from roughmdr.aggregate.law import LoadSeparation
+    from roughmdr.aggregate.problem import Problem
     from roughmdr.ensemble import Ensemble
     from roughmdr.loading.lateral import Path
     from roughmdr.numerics.arguments import Floats
@@ -39,6 +40,8 @@ class Contacts(NamedTuple):
     """[m2]"""
     drawn: Drawn | None = None
     """The asperities themselves; None for an expected law, and where ``plan`` foresees the law from a part of them."""
+    problem: "Problem | None" = None
+    """The asperities, or that part of them, with their material; None for an expected law."""
 
 
 class Stage(Section):
@@ -54,6 +57,10 @@ class Stage(Section):
     """Whether its keys may be swept."""
     fitted: ClassVar[bool] = True
     """Whether its keys may be fitted to a measured normal law."""
+    replaces_contacts: ClassVar[bool] = False
+    """Whether its law is made of the asperities, not of the law of their elastic contacts."""
+    visit_seconds: ClassVar[float] = 0.0
+    """Seconds of an asperity at a step, where it is."""
     on_grid: ClassVar[bool] = False
     """Whether it presses the surface itself by boundary elements, which takes the positions of the asperities."""
     flat: ClassVar[bool] = True
@@ -102,7 +109,7 @@ class Stage(Section):
         """
         return ""
 
-    def reason_against(self, estimator: str) -> str:
+    def reason_against(self, scene: Given, estimator: str) -> str:
         """Return why the estimator "stratified" or "expected" is impossible; empty where it is possible."""
         return ""
 
@@ -156,6 +163,9 @@ class Stage(Section):
         yield from ()
 
     # the law
+
+    def prepare(self, scene: Given, *, drawn: bool) -> None:
+        """Compile what the law of ``drawn`` asperities, or the expected one, needs where it ``replaces_contacts``."""
 
     def inner_variables(self, names: list[str]) -> list[str]:
         """Return the variables that ``law`` asks of the inner law for these; they are compiled before a run."""

@@ -50,6 +50,7 @@ from roughmdr.variables.run import (
     SAMPLE,
     STATISTICS,
     STATUSES,
+    YIELDED,
     YIELDING,
     swept_name,
 )
@@ -106,6 +107,7 @@ __all__ = [
     "TIME",
     "TRAVEL",
     "WITH_MODEL_ERROR",
+    "YIELDED",
     "YIELDING",
     "Attribute",
     "Diagnostic",

@@ -37,6 +37,10 @@ def _sticking(scene: Any) -> bool:
     return "tangential_stiffness" in scene.output.variables and scene.path.lateral is None
 
 
+def _plastic(scene: Any) -> bool:
+    return any(stage.key == "plasticity" for stage in scene.stages)
+
+
 def _hard(scene: Any) -> bool:
     return scene.material.hardness is not None
 
@@ -57,6 +61,12 @@ YIELDING = {
 }
 """Units and meanings of the diagnostics of contacts above the hardness."""
 
+YIELDED = {
+    "plastic_contact_fraction": ("1", "share of the contacts that have yielded, at closest approach"),
+    "plastic_load_fraction": ("1", "share of the load that these contacts bear, at closest approach"),
+}
+"""Units and meanings of the diagnostics of contacts that yield."""
+
 RUN_DIAGNOSTICS = _diagnostics(
     Diagnostic(
         "run_time",
@@ -75,6 +85,13 @@ RUN_DIAGNOSTICS = _diagnostics(
     Diagnostic("adhesion_range_error", "1", "part of the model error: JKR, where adhesion reaches further"),
     Diagnostic("resolution_error", "1", "part of the model error: summits or hills that the map does not resolve"),
     Diagnostic("border_error", "1", "part of the model error: what the border of a map cuts", unstated=0.0),
+    Diagnostic(
+        "plasticity_error",
+        "1",
+        "part of the model error: the model of yielding, from which others differ",
+        unstated=0.0,
+        in_result=_plastic,
+    ),
     Diagnostic(
         "conductance_error",
         "1",
@@ -173,6 +190,7 @@ RUN_DIAGNOSTICS = _diagnostics(
         Diagnostic(name, *told, merge="fmin" if name == "elastic_pressure" else "fmax", in_result=_hard)
         for name, told in YIELDING.items()
     ),
+    *(Diagnostic(name, *told, in_result=_plastic) for name, told in YIELDED.items()),
     Diagnostic(
         "status", "1", "outcome of the realization", STATUSES, int, merge="maximum", missing=NOT_RUN, unstated=DONE
     ),
