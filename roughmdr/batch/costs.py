@@ -91,7 +91,7 @@ def along_seconds(cell: Cell, estimator: str) -> float:
     if cell.scene.needs_positions:
         return begin + section.expected_count * _DRAW + paired_seconds(cell) * (_YIELDING_PAIRS if hard else 1.0)
     energetic = adhesion.work > 0.0 and not {"energy", *LOSSES}.isdisjoint(cell.scene.output.variables)
-    visit = _visit_seconds(adhesion, section.shape_name)
+    visit = max([_visit_seconds(adhesion, section.shape_name), *(stage.visit_seconds for stage in cell.scene.stages)])
     visit *= _ENERGETIC if energetic and section.shape_name != "paraboloid" else 1.0
     return begin + section.expected_count * (_DRAW + visit * steps)
 

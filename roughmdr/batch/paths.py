@@ -16,7 +16,7 @@ import math
 
 import numpy as np
 
-from roughmdr.aggregate import LoadingPath, Problem, simulate
+from roughmdr.aggregate import LoadingPath, Problem
 from roughmdr.batch.realization import simulate_ensemble, simulate_realization
 from roughmdr.errors import Fault, RoughmdrError, SceneError
 from roughmdr.loading.first_reached import Law, OutOfReach, first_reached
@@ -171,10 +171,11 @@ def usual_path(cell: Scene, machine: MachinePath) -> LoadingPath:
 
     SceneError where there is none.
     """
-    problem = Problem(cell.asperities.evenly_drawn(cell.seed), cell.effective_modulus, cell.adhesion_model)
+    ensemble, alone = cell.asperities.evenly_drawn(cell.seed), cell.model_copy(update={"interaction": None})
     try:
-        law = simulate(problem, machine, ["separation"])
+        law = simulate_ensemble(alone, machine, ensemble, ["separation"])
     except RoughmdrError as error:
         raise SceneError.of([Fault(f"path.{cell.path.key}", "", f"cannot be followed: {error}")]) from error
-    separation = np.where(np.isnan(law.variables["separation"]), problem.clear, law.variables["separation"])
+    clear = Problem(ensemble, cell.effective_modulus, cell.adhesion_model).clear
+    separation = np.where(np.isnan(law.variables["separation"]), clear, law.variables["separation"])
     return LoadingPath.along(separation, unload=False, adhesive=machine.adhesive)

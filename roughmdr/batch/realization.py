@@ -35,7 +35,8 @@ def simulate_ensemble(
         return float(ensemble.height.max(initial=-np.inf))
 
     drawn = None if realization is None else Drawn(ensemble, realization)
-    return _staged(scene, path, variables, Contacts(law, highest, ensemble.nominal_area, drawn), lambda: problem)
+    contacts = Contacts(law, highest, ensemble.nominal_area, drawn, problem)
+    return _staged(scene, path, variables, contacts, lambda: problem)
 
 
 def simulate_realization(

@@ -90,6 +90,9 @@ def prepare_all(plan: Plan, ranges: Iterable[RunRange]) -> None:
     for cell, estimator in ((runs.cell, runs.estimator) for runs in ranges):
         scene, path = cell.scene, cell.path
         adhesion, asperities = scene.adhesion_model, scene.asperities
+        if replacing := [stage for stage in scene.stages if stage.replaces_contacts]:
+            replacing[0].prepare(scene, drawn=estimator != "expected")
+            continue
         shape, draws = asperities.shape_name, estimator != "expected"
         kind = shape, adhesion.work > 0.0, adhesion.candidates, adhesion.tabor_known, draws, scene.needs_positions
         if kind in prepared:

@@ -14,6 +14,7 @@ COMPILED = (
     "interaction",
     "kernels",
     "stages/curved",
+    "stages/plastic",
     "loading",
     "numerics",
     "shapes",

@@ -5,12 +5,13 @@ from typing import Any
 
 from roughmdr.stages.conduction import Conduction
 from roughmdr.stages.nominal import Nominal
+from roughmdr.stages.plasticity import Plasticity
 from roughmdr.stages.reference import Reference
 from roughmdr.stages.stage import Stage
 from roughmdr.stages.tangential import Tangential
 from roughmdr.stages.viscoelastic import Viscoelastic
 
-STAGES: tuple[type[Stage], ...] = (Nominal, Viscoelastic, Tangential, Conduction, Reference)
+STAGES: tuple[type[Stage], ...] = (Nominal, Plasticity, Viscoelastic, Tangential, Conduction, Reference)
 """All stages, innermost first: each makes its law from the law of the one before."""
 
 

@@ -117,7 +117,8 @@ class Viscoelastic(Stage):
     def left_out(cls, scene: Given, section: "Viscoelastic | None") -> Iterator[str]:
         """Yield the line on relaxation, for contacts without adhesion."""
         if section is None and scene.work == 0.0:
-            yield "hysteresis: without adhesion a contact has no memory"
+            if not scene.unlike:
+                yield "hysteresis: without adhesion a contact has no memory"
             yield "time: elastic bodies do not relax; the scene has no [viscoelastic]"
 
     @property

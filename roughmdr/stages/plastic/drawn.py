@@ -1,0 +1,135 @@
+"""Asperities of an ensemble that yield."""
+
+import math
+from collections.abc import Iterator
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from roughmdr.aggregate.compute import law_of_totals, rows_for
+from roughmdr.aggregate.law import LoadSeparation
+from roughmdr.aggregate.problem import Problem
+from roughmdr.aggregate.totals import AREA, COUNT, FORCE
+from roughmdr.loading.path import LoadingPath
+from roughmdr.loading.pull_off import WITHOUT_TENSION, PullOff, locate, unloadings
+from roughmdr.loading.pull_off import prepare as prepare_pull_off
+from roughmdr.numerics.arguments import Floats
+from roughmdr.stages.plastic.body import LIMIT, Body, check_depth, range_warnings
+from roughmdr.stages.plastic.models import kernels_of, spread
+from roughmdr.stages.plastic.total import Sum, add_up, partings, rows_of
+
+_MOST_TOLD = 1000
+"""Most asperities by which models are compared: more would change their differences by some percent."""
+
+_MOST_PULLED = 100
+"""Number of the highest asperities whose dents are looked at: they are the largest."""
+
+
+class DrawnAsperities:
+    """Asperities of an ensemble that yield by a model."""
+
+    order = 1
+    """Without a rule over the radii there is nothing to refine."""
+
+    def __init__(self, problem: Problem, model: str, body: Body) -> None:
+        """Take the ensemble of a problem, whose shapes have a radius, and the bodies."""
+        self._problem, self._model, self._body = problem, model, body
+        self._kernels, self._height = kernels_of(model, body), problem.ensemble.height
+        self.depth, self.nominal_area = problem.depth if self._height.size else 0.0, problem.ensemble.nominal_area
+        self.first_touch = float(self._height.max()) if self._height.size else 0.0
+
+    @cached_property
+    def _rows(self) -> Floats:
+        return rows_of(self._kernels, self._problem.ensemble.parameters["radius"], self._body)
+
+    def _along(self, separation: Floats, rows: set[int]) -> Sum:
+        return add_up(self._kernels, self._height, self._rows, separation, self._body, rows)
+
+    def totals(self, separation: Floats, rows: set[int]) -> Floats:
+        """Return totals [row, step] along separations [m]; OutOfRange where one is not representable."""
+        return self._along(separation, rows).total
+
+    def parting(self, lowest: float) -> float:
+        """Return the separation [m] at which the last contact is lost after the flat has been at ``lowest`` [m]."""
+        return float(partings(self._kernels, self._height, self._rows, lowest, self._body).max(initial=lowest))
+
+    def law(self, path: LoadingPath, names: list[str]) -> LoadSeparation:
+        """Return the law along a path of the flat; OutOfRange as ``totals``, TooMuchContact as ``check_depth``."""
+        problem, separation = self._problem, path.separation
+        problem.check_asked(names)
+        closest = float(separation.min())
+        check_depth(self._height - closest, self._rows)
+        found = self._along(separation, rows_for(problem, names))
+
+        def radius_at(separation: float) -> Floats:
+            return np.asarray(self._along(np.array([separation]), {AREA}).closest[0])
+
+        law = law_of_totals(
+            problem, path, names, found.total, found.closest, radius_at, plasticity_error=self.spread(separation)
+        )
+        pull_off = self._pull_off(separation, found.total[FORCE])
+        visits = int(np.searchsorted(-self._height, -np.minimum.accumulate(separation)).sum())
+        warnings = (*law.warnings, *range_warnings(found.closest[0], self._rows), *self._flowing(closest))
+        law = law._replace(visits=visits, pull_off=pull_off, warnings=warnings)
+        return law._replace(yielding=lambda: self.shares(closest))
+
+    def _flowing(self, closest: float) -> Iterator[str]:
+        """Yield a warning where dents are pulled harder than their body bears before they are lost."""
+        tension, body = 0.0, self._body
+        for height, asperity in zip(self._height[:_MOST_PULLED], self._rows, strict=False):
+            if self._kernels.adhesive and height - closest > asperity[LIMIT]:
+                mark = self._kernels.mark(height - closest, asperity, body)
+                _, lost = self._kernels.ends(height - closest, mark, asperity, body)
+                contact = self._kernels.state(height - closest - lost, lost, mark, asperity, body)
+                tension = max(tension, -contact.force / (math.pi * contact.radius * contact.radius))
+        if tension > body.yield_strength:
+            yield "dents are pulled harder than the yield strength before they are lost: they would neck"
+
+    def spread(self, separation: Floats) -> Floats:
+        """Return how much the forces of the models differ along separations [m], over the largest, at each step [1].
+
+        Of many asperities some tell it, each of so many in the order of their heights.
+        """
+        touched = np.flatnonzero(self._height > separation.min())
+        each = -(-max(touched.size, 1) // _MOST_TOLD)
+        some = touched[each // 2 :: each]
+        radius = self._problem.ensemble.parameters["radius"][some]
+        return spread(self._model, self._body, self._height[some], radius, separation)
+
+    def _yielded(self, closest: float) -> NDArray[np.bool_]:
+        return np.asarray(self._height - closest > self._rows[:, LIMIT])
+
+    def shares(self, closest: float) -> dict[str, float]:
+        """Return the shares of the contacts, and of the load of pushing ones, that have yielded at a separation [m]."""
+        radius, force = self._along(np.array([closest]), {FORCE}).closest
+        yielded, touching, pushing = self._yielded(closest), radius > 0.0, float(force.sum(where=force > 0.0))
+        contacts = float(yielded[touching].mean()) if touching.any() else 0.0
+        load = float(force[yielded].sum()) / pushing if pushing > 0.0 else 0.0
+        return {"plastic_contact_fraction": contacts, "plastic_load_fraction": load}
+
+    def _pull_off(self, separation: Floats, force: Floats) -> PullOff:
+        """Return the pull-off along separations [m], given the force [N]; NaN where contacts remain at the end."""
+        rises = unloadings(separation, force)
+        if not any(rise.force[-1] == 0.0 for rise in rises):
+            return PullOff()
+        found = None
+        for rise in rises if self._kernels.adhesive else []:
+            lost = np.sort(partings(self._kernels, self._height, self._rows, float(rise.turns.min()), self._body))
+            largest = locate([rise], lambda path: self._along(path.separation, {FORCE}).total[FORCE], lost)
+            found = largest if found is None or (largest and largest.force < found.force) else found
+        if found is None:
+            return WITHOUT_TENSION
+        there = self._along(found.path.separation, {COUNT, AREA}).total[:, -1]
+        return PullOff(found.force, float(found.path.separation[-1]), float(there[COUNT]), float(there[AREA]))
+
+
+def prepare(model: str, body: Body) -> None:
+    """Compile what the law of a model needs, before several threads or a clock need it."""
+    kernels, height, radius = kernels_of(model, body), np.zeros(1), np.ones(1)
+    rows = rows_of(kernels, radius, body)
+    add_up(kernels, height, rows, height, body, {FORCE})
+    if kernels.adhesive:
+        partings(kernels, height, rows, 0.0, body)
+        prepare_pull_off()
+    spread(model, body, height, radius, height)

@@ -1,0 +1,103 @@
+"""The law of asperities that yield along a path: of the flat, or of the machine that moves it."""
+
+from typing import Protocol
+
+import numpy as np
+
+from roughmdr.aggregate.law import LoadSeparation
+from roughmdr.aggregate.preload import Specimen, to_preload
+from roughmdr.aggregate.simulate import OF_MACHINE, with_place
+from roughmdr.aggregate.totals import FORCE, STIFFNESS
+from roughmdr.errors import OutOfRange
+from roughmdr.loading.machine import FIXED_GRIPS, MachinePath
+from roughmdr.loading.path import LoadingPath
+from roughmdr.loading.steady_passage import ForceAndStiffness, separations_of
+from roughmdr.numerics.arguments import Floats
+
+_ERROR = 1e-12  # error of a load under a machine, over it, and of a separation over a usual indentation
+_ROUNDINGS = 2.0**-50  # relative rounding of a separation at which contacts part
+
+
+class Asperities(Protocol):
+    """Asperities that yield: drawn ones, or the mean over them."""
+
+    @property
+    def first_touch(self) -> float:
+        """Separation [m] of the first touch."""
+
+    @property
+    def depth(self) -> float:
+        """A usual indentation [m]; 0 without asperities."""
+
+    @property
+    def nominal_area(self) -> float | None:
+        """[m2]"""
+
+    @property
+    def order(self) -> int:
+        """Nodes over the radii by which totals are found; ``law`` takes more where they are too few."""
+
+    def totals(self, separation: Floats, rows: set[int]) -> Floats:
+        """Return totals [row, step] along separations [m]; OutOfRange where one is not representable."""
+
+    def parting(self, lowest: float) -> float:
+        """Return the separation [m] at which the last contact is lost after the flat has been at ``lowest`` [m]."""
+
+    def law(self, path: LoadingPath, names: list[str]) -> LoadSeparation:
+        """Return the law along a path of the flat; OutOfRange as ``totals``."""
+
+
+def plastic_law(asperities: Asperities, path: LoadingPath | MachinePath, names: list[str]) -> LoadSeparation:
+    """Return the law with these variables, under a machine with the separation too; OutOfRange as ``totals``.
+
+    Contacts must not adhere where a machine moves the flat.
+    """
+    if isinstance(path, LoadingPath):
+        return asperities.law(path, names)
+
+    def under(path: MachinePath, names: list[str]) -> LoadSeparation:
+        while True:
+            order = asperities.order
+            separation = path.demand if path.machine == FIXED_GRIPS else _separations(asperities, path)
+            way = np.where(np.isinf(separation), asperities.first_touch, separation)
+            along = LoadingPath.along(way, unload=False, adhesive=False)
+            law = asperities.law(along, [name for name in names if name not in OF_MACHINE])
+            if asperities.order == order:
+                return with_place(law, separation, path).only(names)
+
+    if path.preload is not None:
+        if asperities.depth == 0.0:
+            raise OutOfRange("path: without asperities no preload is reached")
+        area = asperities.nominal_area
+        path = to_preload(path, Specimen(under, asperities.first_touch, asperities.depth, area, coupled=False))
+    return under(path, names)
+
+
+def _separations(asperities: Asperities, path: MachinePath) -> Floats:
+    """Return the separation at each step of a machine; inf where a dead load has pulled the flat off.
+
+    The force falls with the separation also where contacts yield, so that each demand is met once, given how low the
+    flat has been.
+    """
+    separation, lowest, top = np.empty(path.demand.size), np.inf, asperities.first_touch
+    for step in range(separation.size):
+        asked, law = path.demand[step : step + 1], _response(asperities, lowest)
+        found = float(separations_of(law, asked, path.machine, top, asperities.depth, _ERROR)[0])
+        found = lowest if abs(found - lowest) <= _ERROR * asperities.depth else found  # the demand it was met by before
+        separation[step] = found
+        if found < lowest:
+            lowest = found
+            parting = max(asperities.parting(lowest), lowest)
+            top = parting + _ROUNDINGS * max(abs(parting), abs(lowest))  # no contact is left there for sure
+    return separation
+
+
+def _response(asperities: Asperities, lowest: float) -> ForceAndStiffness:
+    """Return force and stiffness at a separation after the flat has been at ``lowest`` [m]."""
+
+    def response(separation: float) -> tuple[float, float]:
+        way = np.array([lowest, separation] if separation > lowest else [separation])
+        total = asperities.totals(way, {FORCE, STIFFNESS})
+        return float(total[FORCE, -1]), float(total[STIFFNESS, -1])
+
+    return response
