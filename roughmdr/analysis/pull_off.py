@@ -8,6 +8,7 @@ from roughmdr.analysis.apply import over
 from roughmdr.batch.moments import mean_and_error
 from roughmdr.errors import StoreError
 from roughmdr.model_error.at_force import pull_off_error
+from roughmdr.model_error.parts import PLASTIC
 from roughmdr.result.curves import result_of
 from roughmdr.variables import ADHESION_CODES
 
@@ -46,7 +47,7 @@ def pull_off(dataset: "xr.Dataset") -> "xr.Dataset":
                 about = {"units": "N", "long_name": "standard error of the mean pull-off force"}
                 found["force_sem"] = error.assign_attrs(about)
     found |= {name: dataset[stored] for name, stored in _AS_THEY_ARE.items() if stored in dataset}
-    if "contact_fraction" in found and "asperity_origin" in dataset:
+    if "contact_fraction" in found and "asperity_origin" in dataset and PLASTIC not in dataset:
         found["force_model_error"] = _model_error(dataset, found["force"], found["contact_fraction"])
     return xr.Dataset(found, attrs={"comment": _COMMENT})
 

@@ -7,6 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from roughmdr.errors import StoreError
+from roughmdr.model_error.parts import PLASTIC
 from roughmdr.numerics.arguments import Floats
 from roughmdr.result.model_errors import error_of_mean
 from roughmdr.result.view import Leg, ResultView
@@ -98,11 +99,13 @@ def curves_of(result: ResultView, quantity: Quantity, x: Quantity) -> Iterator[C
     model_error = _model_error(result, name, mean)
     mean, error, model_error, runs = map(quantity.scaled, (mean, error, model_error, runs))
     x_mean, xs = x.scaled(x_mean), x.scaled(xs)
-    sticky = result.adheres
+    sticky, yielding = result.adheres, name == "stiffness" and PLASTIC in result.variables
     for number, cell in enumerate(np.ndindex(mean.shape[:-1])):
         some_missing = runs.size and not done[cell].all()
         of_cell, x_of_cell = (values[cell][done[cell]] if some_missing else values[cell] for values in (runs, xs))
-        for leg, (branch, steps) in enumerate(_legs(result)):
+        for leg, (branch, along) in enumerate(_legs(result)):
+            rises = yielding and branch == "unloading" and result.branches[along[0]] != branch
+            steps = along[int(rises) :]  # at a turn that is not repeated the stiffness is that of yielding
             some = of_cell[:, steps]
             middle, off = mean[cell][steps], 2.0 * error[cell][steps]
             low, high = middle - off, middle + off

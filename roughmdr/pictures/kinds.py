@@ -9,7 +9,7 @@ from roughmdr.pictures.request import Content, Drawable, Picture, Request
 from roughmdr.result.select import along_longest, cell_of, pull_off_step, select
 from roughmdr.result.view import ResultView
 from roughmdr.schema.wording import suggestion
-from roughmdr.variables import LAW_VARIABLES
+from roughmdr.variables import CURVE_VARIABLES, LAW_VARIABLES
 
 _PULL_OFF = "pull-off"
 
@@ -65,8 +65,9 @@ def _law(source: Drawable, request: Request) -> Picture:
     if len(result.cells) > MAX_NAMED and len(result.sweep) > 1:
         result, others = along_longest(result)
         note = f"{note}, {others}" if note else f"{others}; select chooses other cells"
-    names = result.asked(request.variables)
-    overlays = [("reference", overlay_reference(result, names))] if request.with_reference else []
+    names, x = result.asked(request.variables), request.x or "separation"
+    over = [x] if x in CURVE_VARIABLES and x not in names else []
+    overlays = [("reference", overlay_reference(result, names + over))] if request.with_reference else []
     if request.with_expected or request.with_theory:
         from roughmdr.pictures.overlay import overlay_expected, overlay_theory, plan_of_result
 
@@ -75,10 +76,12 @@ def _law(source: Drawable, request: Request) -> Picture:
                 "a part of a sweep does not go with its expected law and theories: they are drawn for whole results"
             )
         plan = plan_of_result(source.file, result)
-        overlays += [("expected", overlay_expected(plan, names))] if request.with_expected else []
-        overlays += [("theory", overlay_theory(plan, names))] if request.with_theory else []
-    if overlays and request.x not in (None, "separation"):
-        raise StoreError(f"x = {request.x!r} does not go with curves over the result: they are over separation")
+        overlays += [("expected", overlay_expected(plan, names + over))] if request.with_expected else []
+        overlays += [("theory", overlay_theory(plan, names, x))] if request.with_theory else []
+    if overlays and x != "separation":
+        if x not in CURVE_VARIABLES:
+            raise StoreError(f"x = {x!r} does not go with curves over the result, which are over its variables")
+        overlays = [(title, overlay.over(x)) for title, overlay in overlays]
     lines = [line for _, overlay in overlays for line in overlay.lines]
     options = LawOptions(request.x, request.per_area, request.log, note)
     figure = draw_law(result, names, lines, options)

@@ -71,7 +71,7 @@ def draw_law(
         quantity = Quantity.of(result, name, per_area=options.per_area)
         curves = list(curves_of(result, quantity, x))
         over = [
-            (line.separation, quantity.in_cell(line.values, cells[line.cell]), style_of(line))
+            (x.in_cell(line.x, cells[line.cell]), quantity.in_cell(line.values, cells[line.cell]), style_of(line))
             for line in lines
             if line.variable == name
         ]

@@ -16,7 +16,7 @@ class OverlayLine(NamedTuple):
     label: str  # name of the theory curve; ``EXPECTED`` for the expected law of the scene, or ``REFERENCE``
     variable: str
     cell: int
-    separation: Floats
+    x: Floats  # separation [m], or the variable drawn over
     values: Floats  # NaN where the theory gives none
 
 
@@ -25,6 +25,13 @@ class Overlay(NamedTuple):
 
     lines: list[OverlayLine]
     remarks: list[str]
+
+    def over(self, name: str) -> "Overlay":
+        """Return the lines over another of their variables, without those that lack it."""
+        x = {(line.label, line.cell): line.values for line in self.lines if line.variable == name}
+        found = [line for line in self.lines if line.variable != name and (line.label, line.cell) in x]
+        remarks = self.remarks if found or not self.lines else [f"not drawn: nothing of it is over {name}"]
+        return Overlay([line._replace(x=x[line.label, line.cell]) for line in found], remarks)
 
 
 def overlay_reference(result: ResultView, names: list[str]) -> Overlay:

@@ -15,16 +15,16 @@ from roughmdr.pictures.theory_curves import THEORY_CURVES, TheoryCurve
 from roughmdr.result.view import ResultView
 from roughmdr.scene import read
 from roughmdr.schema.wording import count_by_cell
-from roughmdr.theory.equal_summits import Variable
 from roughmdr.variables import LATERAL
 
 # Variables of a result: the theory's variable, and whether it is per unit of nominal area.
-_THEORY_VARIABLES: dict[str, tuple[Variable, bool]] = {
+_THEORY_VARIABLES: dict[str, tuple[str, bool]] = {
     "force": ("pressure", True),
     "contact_area": ("contact_fraction", True),
     "contact_count": ("contact_density", True),
     "pressure": ("pressure", False),
     "contact_fraction": ("contact_fraction", False),
+    "thermal_conductance": ("conductance", True),
 }
 _SEPARATION_RTOL = 1e-9  # difference of equal separations, over the largest
 
@@ -59,17 +59,21 @@ def overlay_expected(plan: Plan, names: list[str]) -> Overlay:
     return _evaluate_cells(plan, EXPECTED, lambda cell: "", evaluate)
 
 
-def overlay_theory(plan: Plan, names: list[str]) -> Overlay:
-    """Return the theory curves in each cell to which they apply, in those of the variables that they give.
+def overlay_theory(plan: Plan, names: list[str], x: str = "separation") -> Overlay:
+    """Return the theory curves in each cell to which they apply, in those of the variables that they give, and ``x``.
 
-    Remarks begin with the name of the theory curve.
+    Remarks begin with the name of the theory curve, or with those that have the same one.
     """
     found = {
-        label: _evaluate_cells(plan, label, curve.remark, partial(_evaluate_curve, curve, names))
+        label: _evaluate_cells(plan, label, curve.remark, partial(_evaluate_curve, curve, names, x))
         for label, curve in THEORY_CURVES.items()
     }
+    labels: dict[str, list[str]] = {}
+    for label, overlay in found.items():
+        for remark in overlay.remarks:
+            labels.setdefault(remark, []).append(label)
     lines = [line for overlay in found.values() for line in overlay.lines]
-    return Overlay(lines, [f"{label}: {remark}" for label, overlay in found.items() for remark in overlay.remarks])
+    return Overlay(lines, [f"{', '.join(alike)}: {remark}" for remark, alike in labels.items()])
 
 
 def _evaluate_cells(
@@ -87,14 +91,15 @@ def _evaluate_cells(
     return Overlay(lines, count_by_cell(remarks, len(plan.cells)))
 
 
-def _evaluate_curve(curve: TheoryCurve, names: list[str], cell: Cell) -> dict[str, Floats]:
+def _evaluate_curve(curve: TheoryCurve, names: list[str], x: str, cell: Cell) -> dict[str, Floats]:
     """Return those of the variables that a theory curve gives in a cell; RoughmdrError if it gives none."""
-    if cell.scene.unlike:
-        raise RoughmdrError(f"it is of elastic bodies under a flat, and the scene of {cell.scene.unlike}")
-    known = {name: _THEORY_VARIABLES[name] for name in names if name in _THEORY_VARIABLES}
+    bodies, elastic = cell.scene.unlike, "elastic bodies under a flat"
+    if bodies != curve.bodies:
+        raise RoughmdrError(f"for {curve.bodies or elastic}; the scene is of {bodies or elastic}")
+    known = {name: _THEORY_VARIABLES[name] for name in [*names, x] if name in _THEORY_VARIABLES}
     given = {name: (variable, per_area) for name, (variable, per_area) in known.items() if variable in curve.variables}
-    if not given:
-        raise RoughmdrError(f"it gives no {' or '.join(names)}")
+    if not given.keys() - {x} or x not in {"separation", *given}:
+        raise RoughmdrError(f"it gives no {' or '.join(names)}" + f" over {x}" * (x != "separation"))
     values = {variable: curve.evaluate(cell, variable) for variable in {variable for variable, _ in given.values()}}
     area = cell.scene.asperities.nominal_area
     if area is None:

@@ -12,7 +12,7 @@ from roughmdr import theory
 from roughmdr.aggregate.tabor import JkrValidity, jkr_validity
 from roughmdr.batch.plan import Cell
 from roughmdr.ensemble import Ensemble, NayakAsperities, RandomAsperities, SurfaceAsperities
-from roughmdr.ensemble.gaussian.summit_distribution import SummitDistribution
+from roughmdr.ensemble.gaussian.summit_distribution import SUMMITS_LESS, SummitDistribution
 from roughmdr.ensemble.maps.waves import MapWaves
 from roughmdr.ensemble.maps.words import describe_moments, describe_spectrum
 from roughmdr.ensemble.random.distribution import Distribution
@@ -20,6 +20,9 @@ from roughmdr.errors import RoughmdrError
 from roughmdr.numerics.arguments import Floats
 from roughmdr.scene import Scene
 from roughmdr.spectrum import MapSpectrum, Moments, SelfAffine
+from roughmdr.stages.conduction import Conduction
+from roughmdr.stages.plastic.empirical import TABOR_HARDNESS
+from roughmdr.stages.plasticity import Plasticity
 from roughmdr.theory.equal_summits import Variable
 
 _DMT_MAX_TABOR = 0.1
@@ -29,11 +32,12 @@ _DMT_MAX_TABOR = 0.1
 class TheoryCurve(NamedTuple):
     """A theory as it is drawn over a result."""
 
-    evaluate: Callable[[Cell, Variable], Floats]
+    evaluate: Callable[[Cell, Any], Floats]
     """Return a variable at each step of a cell, NaN where the theory gives none; RoughmdrError if it does not apply."""
-    variables: tuple[Variable, ...] = get_args(Variable)
+    variables: tuple[str, ...] = get_args(Variable)  # or "conductance": thermal, per area
     note: str = ""  # how the theory differs from the scene
     on_maps: Callable[[MapWaves], str] = describe_moments  # the numbers of a map that it needs, in words
+    bodies: str = ""  # the bodies that it is of: empty for elastic ones, else as ``Stage.unlike`` has them
 
     def remark(self, cell: Cell) -> str:
         """Return how the theory differs from the scene of a cell, and the numbers that it needs of a map; or empty."""
@@ -179,6 +183,47 @@ def _persson(cell: Cell, variable: Variable) -> Floats:
     return values
 
 
+def _surface_below(scene: Scene) -> tuple[Moments, float]:
+    """Return the moments of a surface and the height of its mean plane: of equal summits those of McCool's inverted."""
+    section = scene.asperities
+    if not isinstance(section, RandomAsperities):
+        surface = _Surface.of(scene)
+        return surface.moments, surface.mean
+    _check_no_adhesion(scene)
+    summits = _equal_summits(scene)
+    if section.height.family != "norm" or section.height.truncated:
+        raise RoughmdrError("heights are not normal")
+    m4 = math.pi * (0.375 / summits["radius"]) ** 2
+    m2 = m4 / (6.0 * math.pi * math.sqrt(3.0) * summits["density"])
+    m0 = section.height.scale**2 + SUMMITS_LESS * m2 * m2 / m4
+    law = SummitDistribution(Moments.checked(m0, m2, m4))
+    return law.moments, section.height.loc - law.mean
+
+
+def _cooper(cell: Cell, variable: str) -> Floats:
+    """Evaluate the pressure of plane sections, H erfc(h/(sqrt(2) sigma))/2, and the conductance there."""
+    from scipy.special import erfc
+
+    scene = cell.scene
+    yielding, conducting = scene.stage(Plasticity), scene.stage(Conduction)
+    assert yielding is not None  # the curve is of contacts that yield
+    conductivity = 0.0 if conducting is None else 0.5 * conducting.factors.get("thermal_conductance", 0.0)
+    if conductivity == 0.0:
+        raise RoughmdrError("the scene has no conduction.conductivity")
+    moments, mean = _surface_below(scene)
+    sigma, hardness = math.sqrt(moments.m0), TABOR_HARDNESS * yielding.constants(scene).yield_strength
+    fraction = 0.5 * erfc((cell.path.separation - mean) / (math.sqrt(2.0) * sigma))
+    if variable != "conductance":
+        return np.asarray(fraction if variable == "contact_fraction" else hardness * fraction)
+    return theory.cooper_mikic_yovanovich(
+        pressure=hardness * fraction,
+        hardness=hardness,
+        rms_height=sigma,
+        mean_slope=math.sqrt(2.0 * moments.m2 / math.pi),
+        conductivity=conductivity,
+    )
+
+
 _DEFORMED = "its separation is the mean gap to the deformed surface, the scene's is from the undeformed mean plane"
 THEORY_CURVES = {
     "greenwood_williamson": TheoryCurve(_greenwood_williamson),
@@ -192,5 +237,11 @@ THEORY_CURVES = {
     "persson_separation": TheoryCurve(_persson, ("pressure",), _DEFORMED, describe_spectrum),
     "persson_contact_fraction": TheoryCurve(
         _persson, ("contact_fraction",), f"at the pressure of persson_separation; {_DEFORMED}", describe_spectrum
+    ),
+    "cooper_mikic_yovanovich": TheoryCurve(
+        _cooper,
+        ("pressure", "contact_fraction", "conductance"),
+        "all contacts have yielded, as plane sections of the surface; x = pressure draws it over the pressure",
+        bodies=Plasticity.unlike,
     ),
 }

@@ -4,6 +4,7 @@ from collections.abc import Iterator, Mapping
 
 import numpy as np
 
+from roughmdr.model_error.parts import PLASTIC
 from roughmdr.numerics.arguments import Floats
 from roughmdr.result.view import ResultView
 from roughmdr.schema.toml_text import parse_toml
@@ -16,7 +17,7 @@ _TOLD = 0.01
 """Sampling error below which nothing is said."""
 
 _SAMPLES = {"surface": "map", "spectrum": "map", "file": "ensemble"}  # words for a sample, by source
-_ELASTIC = "plastic flow is not modelled: above about the hardness of the softer body they yield, and become larger"
+_ELASTIC = "; plastic flow is not modelled: above about the hardness of the softer body they yield, and become larger"
 _ERRORS = {"conductance": "conductance_error", "sticking": "tangential_error"}
 
 
@@ -55,8 +56,9 @@ def contact_pressure_lines(result: ResultView) -> Iterator[tuple[str, str]]:
     asperities, elements = _range(result, ""), _range(result, "reference_")
     if asperities:
         beside = f", {elements} by boundary elements," if elements else ""
-        yields = "hardness tells which of them yield" if "yielded_load_fraction" in result.variables else _ELASTIC
-        yield "pressure", f"{asperities}{beside} on average in the contacts at closest approach; {yields}"
+        told = "; hardness tells which of them yield" if "yielded_load_fraction" in result.variables else _ELASTIC
+        told = "" if PLASTIC in result.variables else told
+        yield "pressure", f"{asperities}{beside} on average in the contacts at closest approach{told}"
 
 
 def _range(result: ResultView, of: str) -> str:

@@ -57,7 +57,7 @@ class CellTable(TypedDict):
     pull_off: PullOffTable | None
     model_error: float
     parts: dict[str, float]  # of the model error, by their names in results
-    at_given_pressure: dict[str, float]  # largest model errors of other variables there, over the true value
+    at_given_pressure: dict[str, float]  # largest model errors of other variables there; none if contacts yield
     largest_contact_fraction: float
     effective_contacts: float  # that carry the load at closest approach
     sampling_error: float  # scatter of the force there from patch to patch
@@ -92,7 +92,7 @@ class ResultTable(TypedDict):
     path: list[str]  # which separations "clear" and targets came to
     lattice: list[str]  # that the asperities fill, with its pitch and patch
     map: list[str]
-    trust: dict[str, str | None]  # "contact", "model_error", "trust", "hardness": in words
+    trust: dict[str, str | None]  # by the names of ``_TRUST``: in words
     sample: str | None  # how far one stands for others
     advice: str | None
     reference: str | None  # other sections that tell something of a result have a key of their own
@@ -258,7 +258,7 @@ def paragraphs(lines: Iterable[tuple[str, str]]) -> dict[str, str]:
     }
 
 
-_TRUST = ("contact", "model_error", "trust", "hardness")
+_TRUST = ("contact", "model_error", "trust", "hardness", "yielding")
 
 
 def trust_table(lines: Iterable[tuple[str, str]]) -> dict[str, str | None]:

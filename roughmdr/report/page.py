@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from roughmdr.errors import StoreError
-from roughmdr.model_error.parts import PARTS
+from roughmdr.model_error.parts import ALL_PARTS
 from roughmdr.pictures.kinds import draw_request
 from roughmdr.pictures.request import Drawable, Request
 from roughmdr.pictures.style import png_of, styled
@@ -164,7 +164,7 @@ def error_rows(result: ResultView) -> Iterator[ErrorRow]:
         yield ErrorRow(
             "model", result.largest("model_error"), "assumptions of the model, at closest approach, of the force"
         )
-        for part, reason in PARTS.items():
+        for part, reason in ALL_PARTS.items():
             if (size := result.largest(part)) > 0.0:
                 yield ErrorRow(f"– {part.removesuffix('_error').replace('_', ' ')}", size, f"part of it: {reason}")
         for name, size in largest_of_result(result).items():

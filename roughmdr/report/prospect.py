@@ -10,7 +10,7 @@ from roughmdr.ensemble.maps.words import IMPLAUSIBLE
 from roughmdr.result.hardness import hardness_lines
 from roughmdr.result.trust import trust_lines
 from roughmdr.schema.units import format_quantity
-from roughmdr.variables import YIELDING
+from roughmdr.variables import YIELDED, YIELDING
 
 if TYPE_CHECKING:
     from roughmdr.batch.foresee import Foreseen, Prospect
@@ -68,7 +68,8 @@ def prospect_lines(prospect: "Prospect") -> Iterator[tuple[str, str]]:
         how = 'with [interaction] model = "pairwise" it would be found ' if parts else ""
         yield "", f"{how}at about {format_quantity(prospect.coupled_seconds, 's')} a realisation on one core"
     of_cells = [cell.law.yielding() for cell in cells]
-    yield from hardness_lines({name: [each.get(name, math.nan) for each in of_cells] for name in YIELDING})
+    names_of_yielding = (*YIELDING, *YIELDED)
+    yield from hardness_lines({name: [each.get(name, math.nan) for each in of_cells] for name in names_of_yielding})
 
 
 def pressure_at_closest(cell: "Foreseen") -> float:

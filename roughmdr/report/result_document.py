@@ -6,7 +6,7 @@ from typing import cast
 
 import numpy as np
 
-from roughmdr.model_error.parts import PARTS
+from roughmdr.model_error.parts import ALL_PARTS
 from roughmdr.report.advice import advice_on
 from roughmdr.report.contacts import sample_of_result
 from roughmdr.report.documents import (
@@ -24,7 +24,7 @@ from roughmdr.result.trust import trust_of_result
 from roughmdr.result.view import ResultView, swept_values
 from roughmdr.stages import STAGES
 from roughmdr.storage.labelled import Array
-from roughmdr.variables import RUN_DIAGNOSTICS, STATUSES, YIELDING
+from roughmdr.variables import RUN_DIAGNOSTICS, STATUSES, YIELDED, YIELDING
 
 
 def result_table(result: ResultView, file: Path | None, elapsed: float | None = None) -> ResultTable:
@@ -89,6 +89,7 @@ def _cell(result: ResultView, number: int, cell: tuple[int, ...]) -> CellTable:
     def largest(name: str) -> float:
         return float(np.fmax.reduce(values(name)))
 
+    yielding = [*YIELDING, *(name for name in YIELDED if name in result.variables)]
     status, counts = values("status"), values("realization_count")
     method = result.method(cell)
     accuracy: AccuracyTable | None = {"reached": largest("accuracy_reached"), "method": method} if method else None
@@ -99,14 +100,14 @@ def _cell(result: ResultView, number: int, cell: tuple[int, ...]) -> CellTable:
         "remark": first_remark(result, cell),
         "pull_off": _pull_off(result, cell),
         "model_error": largest("model_error"),
-        "parts": {name: largest(name) for name in PARTS},
+        "parts": {name: largest(name) for name in ALL_PARTS if name in result.variables},
         "at_given_pressure": largest_of_result(result, cell),
         "largest_contact_fraction": largest("largest_contact_fraction"),
         "effective_contacts": float(np.fmin.reduce(values("effective_contacts"))),
         "sampling_error": largest("sampling_error"),
         "area_sampling_error": largest("area_sampling_error"),
         "trusted_separation": largest("trusted_separation"),
-        "yielding": {name: float(getattr(np, RUN_DIAGNOSTICS[name].merge).reduce(values(name))) for name in YIELDING},
+        "yielding": {name: float(getattr(np, RUN_DIAGNOSTICS[name].merge).reduce(values(name))) for name in yielding},
         "numerical_error": largest("numerical_error"),
         "run_time": float(np.nansum(values("run_time"))),
         "accuracy": accuracy,

@@ -26,6 +26,8 @@ from roughmdr.numerics.arguments import Floats
 from roughmdr.numerics.gauss import unit_gauss
 from roughmdr.spectrum import MIN_ALPHA, Moments
 
+SUMMITS_LESS = 1.0 + 16.0 / math.pi - 3.0 * math.sqrt(3.0)
+"""Variance that heights of summits lack [m2^2/m4]: S has the mean (4/3) sqrt(6/pi), mean square 2 sqrt(3) + 1/3."""
 _TAIL_WIDTH = 12.0  # distance [sqrt(v)] above which a negligible fraction of the summits lies
 _NORMAL = Distribution("norm", (), 0.0, 1.0)
 _NORM = math.sqrt(6.0 / math.pi)  # factor of the density of S
@@ -64,9 +66,7 @@ class SummitDistribution(NamedTuple):
     @property
     def sigma(self) -> float:
         """Standard deviation of the heights, sqrt(m0 (1 - (1 + 16/pi - 3 sqrt(3))/alpha)) [m]."""
-        # S has the mean (4/3) sqrt(6/pi) and the mean square 2 sqrt(3) + 1/3.
-        numerator = 1.0 + 16.0 / math.pi - 3.0 * math.sqrt(3.0)
-        return math.sqrt(self.moments.m0 * (1.0 - numerator / self.moments.alpha))
+        return math.sqrt(self.moments.m0 * (1.0 - SUMMITS_LESS / self.moments.alpha))
 
     @property
     def _parts(self) -> tuple[float, float]:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from roughmdr.errors import LimitWarning, StoreError, level_outside
+from roughmdr.model_error.parts import PLASTIC
 from roughmdr.report.export.formats import FORMATS, Format
 from roughmdr.report.export.header import origin_lines, table_lines
 from roughmdr.report.export.law import QUANTITIES, Quantity, law_of
@@ -30,6 +31,10 @@ if TYPE_CHECKING:
     import xarray as xr
 
 _LEAST_ERROR = 1e-9
+_MEMORY = {
+    "loading": "contacts yield: this is the first loading, and branch 'unloading' the elastic law that follows it",
+    "unloading": "contacts have yielded: this is the elastic law of faces that have borne its largest pressure",
+}
 
 
 @dataclass(frozen=True)
@@ -153,8 +158,9 @@ def document_of(result: ResultView, file: Path | None, asked: Export) -> tuple[D
     header = dict(origin_lines(cell, words)) | dict(table_lines(cell, table, quantity, law.source, units))
     if note := asked.format.quantities[asked.quantity]:
         header["use"] = note
+    memory = {"memory": _MEMORY[asked.branch]} if cell.known(PLASTIC).size else {}
     friction = _friction(result, asked) if quantity.name == "tangential" else None
-    return Document(quantity.name, header, columns, friction), table.warnings
+    return Document(quantity.name, header | memory, columns, friction), (*table.warnings, *memory.values())
 
 
 def _friction(result: ResultView, asked: Export) -> float | None:
