@@ -20,9 +20,10 @@ TOGETHER = (
 )  # fmt: skip
 """Studies that "all" carries out, one after the other."""
 MODULES = {
-    **{name: f"studies.{name}" for name in (*TOGETHER, "accuracy", "asked", "asperity_error")},
+    **{name: f"studies.{name}" for name in (*TOGETHER, "accuracy", "asked", "asperity_error", "versus_lammps")},
     **{name: f"figures.{name}" for name in ("adhesion_range", "interaction", "springs", "summits")},
     **{name: f"benchmarks.{name}" for name in ("batch", "foreseen", "scaling")},
+    "versus_saturated": "studies.versus_saturated",
     "one_asperity": "figures.one_asperity_pictures",
 }
 """Modules that hold a ``STUDY``, by its name."""
