@@ -82,6 +82,13 @@ KINDS: dict[str, dict[str, Any]] = {
         output={"variables": ["thermal_conductance", "electrical_conductance"]},
         path=RANGE,
     ),
+    "yielding": elastic(
+        material={"modulus": "3 MPa", "poisson": 0.4},
+        plasticity={"yield_strength": 2e4, "model": "mdr"},
+    ),
+    "yielding spheres": elastic(
+        material={"modulus": "3 MPa", "poisson": 0.4}, plasticity={"hardness": 6e4, "body": "sphere"}
+    ),
     "viscoelastic": elastic(
         viscoelastic={
             "relaxation": [{"time": 1.0, "share": 0.5}], "speed": 1e-6, "retraction_speed": 2e-6, "dwell": 1.0,
@@ -131,6 +138,8 @@ KINDS: dict[str, dict[str, Any]] = {
     ),
 }  # fmt: skip
 NAMES = {
+    "plasticity.model": "jackson-green",
+    "plasticity.body": "half-space",
     "asperities.placement": "hexagonal",
     "asperities.model": "hills",
     "interaction.boundary": "free",

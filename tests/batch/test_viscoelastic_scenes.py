@@ -193,7 +193,7 @@ def test_the_commands(tmp_path: Path) -> None:
     assert "[interaction]" not in told.partition("left out")[0]
     for x in ("separation", "time"):
         call("plot", out, "-o", picture, "--x", x)
-    assert "elastic bodies under a flat, and the scene of bodies that relax" in call(
+    assert "for elastic bodies under a flat; the scene is of bodies that relax" in call(
         "plot", out, "-o", picture, "--with-theory"
     )
     refused = CliRunner().invoke(main, ["plot", str(out), "-o", str(picture), "--kind", "asperity"])

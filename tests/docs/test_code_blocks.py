@@ -28,6 +28,7 @@ LONG = [
     "asperities",
     "batches",
     "contact_engineering",
+    "contacts_that_yield",
     "greenwood_williamson",
     "layers",
     "measured_curves",

@@ -371,5 +371,5 @@ def test_any_small_ensemble(count: int, seed: int, boundary: str, order: int, h:
     solved = np.isfinite(force)
     assert float(found.marked_steps) >= np.count_nonzero(~solved)
     assert (np.diff(force[solved]) >= 0.0).all()
-    if solved.all():
+    if float(found.marked_steps) == 0.0:
         assert float(found.numerical_error) <= 1e-6

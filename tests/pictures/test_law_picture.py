@@ -166,7 +166,7 @@ def test_a_style_changes_the_picture_and_is_left_behind(result: xr.Dataset) -> N
         ({"x": "forse"}, "did you mean 'force'"),
         ({"at": {"force": 1.0}}, "at does not go with kind 'law'"),
         ({"select": {"adhesion.work": 0.05}}, "is not swept"),
-        ({"x": "force", "with_expected": True}, "they are over separation"),
+        ({"x": "remote", "with_expected": True}, "which are over its variables"),
     ],
 )
 def test_options_that_are_refused(result: xr.Dataset, options: dict[str, Any], says: str) -> None:
@@ -307,3 +307,16 @@ def test_the_band_of_the_model_error_is_over_the_largest_force_where_the_error_i
     same = list(curves_of(earlier, Quantity.of(earlier, "force"), Quantity.of(earlier, "separation")))
     for one, other in zip(curves, same, strict=True):
         np.testing.assert_array_equal(other.model_error, one.model_error)
+
+
+def test_the_stiffness_of_contacts_that_yield_does_not_rise_from_the_turn() -> None:
+    path = {"separation": {"start": "3 sigma", "stop": "1 sigma", "steps": 8}, "unload": True}
+    asked = scene(asperities=FEW, path=path, adhesion=None, plasticity={"yield_strength": "1 kPa"})
+    asked["output"] = {"variables": ["stiffness", "force"]}
+    run = rm.run(asked)
+    figure = rm.plot(run)
+    up = run.isel(step=slice(8, None))
+    np.testing.assert_allclose(line(figure, 0, "unloading")[:, 0], up.separation, rtol=1e-12)
+    np.testing.assert_allclose(line(figure, 1, "unloading")[0, 0], run.separation.min(), rtol=1e-12)
+    once = rm.run(asked | {"path": {"separation": [3e-6, 2e-6, 1e-6, 1.01e-6, 3e-6]}})  # the turn is not repeated
+    np.testing.assert_allclose(line(rm.plot(once), 0, "unloading")[:, 0], once.separation[3:], rtol=1e-12)

@@ -20,7 +20,15 @@ from roughmdr.shapes import SHAPES
 from roughmdr.stages import STAGES
 
 BIB = (Path(rm.__file__).parent / "report/papers.bib").read_text("ascii")
-WITHOUT_DOI = {"Barber2003", "Cattaneo1938", "Mindlin1949", "MindlinDeresiewicz1953", "Jaeger1995", "Masing1926"}
+WITHOUT_DOI = {
+    "Etsion2005",
+    "Barber2003",
+    "Cattaneo1938",
+    "Mindlin1949",
+    "MindlinDeresiewicz1953",
+    "Jaeger1995",
+    "Masing1926",
+}
 """Papers whose DOI is not certain, or which have none."""
 SOFTWARE = {"Harris2020", "Lam2015", "Virtanen2020", "Hoyer2017", "Rocklin2015"}
 ALWAYS = {"Hess2012", "PopovHess2015", "Sneddon1965", *SOFTWARE}

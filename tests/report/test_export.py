@@ -336,3 +336,17 @@ def test_nothing_in_a_title_becomes_a_line_of_the_table(files: Path) -> None:
     assert keyword.startswith("*SURFACE")
     assert "\x1b" not in (files / "t.csv").read_text()
     assert of_json(files / "t.json")["header"]["scene"] == made.attrs["title"]
+
+
+def test_contacts_that_yield_have_a_table_of_the_first_loading_and_one_of_what_follows(tmp_path: Path) -> None:
+    path = {"separation": {"start": "clear", "stop": "1 sigma", "steps": 150}, "unload": True}
+    rm.run(expected(path=path, plasticity={"yield_strength": "30 kPa"}), tmp_path / "yielding.nc")
+    for branch, told in (("loading", "this is the first loading"), ("unloading", "this is the elastic law")):
+        with pytest.warns(rm.LimitWarning, match=told):
+            file = exported(tmp_path / "yielding.nc", f"{branch}.csv", to="csv", branch=branch, error=0.1)
+        assert told in file.read_text().replace("\n#     ", " ")
+        frame, (separation, pressure) = of_csv(file), law_of(tmp_path / "yielding.nc", branch)
+        at = np.interp(-separation, -frame["separation [m]"], frame["pressure [Pa]"])
+        np.testing.assert_allclose(at, pressure, atol=0.1 * pressure.max())
+    with pytest.raises(rm.StoreError, match=r"scene has \[plasticity\]"):
+        exported(tmp_path / "yielding.nc", "nodes.csv", to="csv", quantity="nodes")

@@ -117,6 +117,8 @@ BASES: dict[str, dict[str, Any]] = {
         }
         for name, amplitude in (("rms_height", "0.5 um"), ("rms_slope", 0.1))
     },
+    "yielding": {**SCENE, "plasticity": {"yield_strength": "1 MPa", "model": "mdr", "body": "sphere"}},
+    "yielding by hardness": {**SCENE, "plasticity": {"hardness": "1 MPa"}},
     "adhesion by its strength": {
         **SCENE,
         "adhesion": {**SCENE["adhesion"], "model": "auto", "strength": 1e7, "error": 0.1},

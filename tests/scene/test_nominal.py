@@ -145,7 +145,7 @@ def test_laws_of_a_flat_are_not_taken_for_that_of_a_body(tmp_path: Path) -> None
     result = rm.run(curved())
     with pytest.raises(rm.StoreError, match=r"this scene has .nominal."):
         result.roughmdr.normalise("gw")
-    with pytest.warns(UserWarning, match="it is of elastic bodies under a flat, and the scene of a curved body"):
+    with pytest.warns(UserWarning, match="for elastic bodies under a flat; the scene is of a curved body"):
         rm.plot(result, tmp_path / "law.png", with_theory=True, variables="force")
 
 
