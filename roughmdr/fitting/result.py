@@ -72,6 +72,8 @@ def assemble(fitted: Fitted, known: Uncertainty, seconds: float, command: str) -
         **{name: each for name, each in compared.items() if "units" not in each.attrs},
     }
     warnings = [*undecided, *doubts(model, found, known), *law.warnings]
+    if any(stage.replaces_contacts for stage in scene.stages) and law.yielding()["plastic_contact_fraction"] == 0.0:
+        warnings.append("no contact of the fitted law yields: begin the search with a lower strength")
     interaction = None if scene.interaction is None else scene.interaction.model
     attrs = {
         **provenance(scene.title, command),
