@@ -103,7 +103,9 @@ def capacity(result: xr.Dataset) -> dict[str, float]:
     return {
         "runs": runs,
         "tasks": len(tasks),
-        "computing": runs * ENSEMBLE * float(result.drawing_time + result.visiting_time),  # of all cores together
+        "computing": runs
+        * ENSEMBLE
+        * float(result.drawing_time + result.visiting_time),  # seconds, summed over the cores
         **{name: len(tasks) * float(seconds) for name, seconds in by_part.items()},
         "statistics": 4.0 * curve * CELLS,
         "curves": curve * runs,

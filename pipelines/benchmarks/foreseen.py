@@ -24,7 +24,7 @@ SCENES = {
     "256 x 2000": ["batch.realizations=256", "asperities.count=2000"],
     "sweep": ["batch.realizations=32", "asperities.count=2000", "sweep.adhesion.work=[0.01,0.02,0.05]",
               "sweep.asperities.height.std={logspace=['0.1 um','10 um'],num=5}"],
-    "4 x 1e6": ["batch.realizations=4", "asperities.count=1000000"],
+    "4 x 1e6": ["batch.realizations=4", "asperities.count=1000000", "asperities.patch='100 mm'"],
     "80000 steps": ["batch.realizations=64", "asperities.count=200", "path.separation.steps=40000"],
 }  # fmt: skip
 """Changes of the starter scene."""

@@ -160,7 +160,7 @@ def fitted(model: str, d: float, u: float, material: tuple[float, float, float, 
         return unit * x * mp.sqrt(x), mp.sqrt(R * critical * x), mp.mpf(0)
     if green:
         area = w * (w / mp.mpf("1.9")) ** (mp.mpf("0.14") * mp.exp(23 * Y / E))
-        hardness = mp.mpf("2.84") * (1 - mp.exp(-mp.mpf("0.82") * (critical * area / R) ** mp.mpf("-0.35")))  # over Y
+        hardness = mp.mpf("2.84") * (1 - mp.exp(-mp.mpf("0.82") * (critical * area / R) ** mp.mpf("-0.35")))  # H_G/Y
         force = mp.exp(-(w ** (mp.mpf(5) / 12)) / 4) * w * mp.sqrt(w)
         force += 4 * hardness / C * (1 - mp.exp(-(w ** (mp.mpf(5) / 9)) / 25)) * w
     elif w <= 110:

@@ -17,7 +17,7 @@ _ROUNDINGS = 32 * UNIT  # error of the control and of its two terms, with adhesi
 class Judged(NamedTuple):
     """The error of one result."""
 
-    error: float  # over the natural scale of the quantity
+    error: float  # [1] relative to the natural scale of the quantity
     allowed: float
 
     @property

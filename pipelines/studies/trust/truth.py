@@ -47,7 +47,7 @@ def by_pairs(ensemble: xr.Dataset, modulus: float, work: float, closest: float, 
     height, radius = (ensemble[name].to_numpy() for name in ("height", "radius"))
     flanks = height[:, None] - 0.5 * distances(ensemble) ** 2 / radius[:, None]
     high = height > closest - _LIFTED * (height.max() - closest)
-    may_touch = high & ~(flanks > height).any(axis=0)  # those below the flank of another never do
+    may_touch = high & ~(flanks > height).any(axis=0)  # tops below the flank of another never do
     x, y, height, radius = (ensemble[name].to_numpy()[may_touch] for name in ("x", "y", "height", "radius"))
     green = periodic_green(x, y, side(ensemble), modulus)
     pressed = Paraboloids(height, radius, green, modulus, work)

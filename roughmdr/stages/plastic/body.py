@@ -1,5 +1,6 @@
 """Body: the constants of bodies that yield, and the numbers of each asperity that follow from them."""
 
+import math
 from types import ModuleType
 from typing import Any, NamedTuple
 
@@ -7,6 +8,7 @@ import numpy as np
 
 from roughmdr.errors import TooMuchContact
 from roughmdr.numerics.arguments import Floats
+from roughmdr.numerics.jit import njit
 
 # Rows of the numbers of an asperity.
 RADIUS, CRITICAL, LIMIT, SQUARE, BEFORE, DEPTH, TIP, PULL, STIFFNESS_AT_TIP = range(9)
@@ -34,7 +36,11 @@ class Body(NamedTuple):
 
 
 class Mark(NamedTuple):
-    """The mark that the deepest indentation has left in an asperity; its meaning is the model's."""
+    """The mark that the deepest indentation has left in an asperity.
+
+    By "mdr": radius b [m] and profile height H [m] of the dent, and how far the flat moves over its springs [1]. By the
+    fits: force [N] and radius [m] at that indentation, and the indentation [m] that is left.
+    """
 
     first: float
     second: float
@@ -49,7 +55,7 @@ class State(NamedTuple):
     radius: float
     """[m]"""
     stiffness: float
-    """dF/d(indentation) [N/m]: of more yielding at the deepest indentation, elastic above it."""
+    """dF/d(indentation) [N/m]: of more yielding where ``rise`` is 0, elastic elsewhere."""
     stored: float
     """Elastic energy less that of adhesion [J]."""
 
@@ -76,12 +82,21 @@ class PlasticKernels(ModuleType):
 
 NO_MARK = Mark(0.0, 0.0, 0.0)
 """Mark of an asperity that has not yielded."""
-
-
 JUST_RISEN = 5e-324
 """Rise [m] of a flat that has been as low before, next to none: contacts are elastic there."""
 _DEEPEST = 0.9  # indentation over the radius beyond which the force of "mdr" on spheres falls
 _WIDEST = 0.41  # contact radius over that of the asperity up to which Jackson and Green fitted their formulas
+
+
+@njit
+def hertz(indentation: float, asperity: Floats, body: Body) -> State:
+    """A contact that has not yielded, under an indentation [m]: F = 4/3 E* sqrt(R) d^(3/2), a = sqrt(R d)."""
+    if indentation <= 0.0:
+        return State(0.0, 0.0, 0.0, 0.0)
+    radius = math.sqrt(asperity[RADIUS] * indentation)
+    stiffness = 2.0 * body.effective_modulus * radius
+    force = stiffness * indentation / 1.5
+    return State(force, radius, stiffness, 0.4 * force * indentation)
 
 
 def check_depth(deepest: Floats, rows: Floats) -> None:

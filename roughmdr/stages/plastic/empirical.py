@@ -10,7 +10,7 @@ import math
 
 from roughmdr.numerics.arguments import Floats
 from roughmdr.numerics.jit import njit, once, specialise
-from roughmdr.stages.plastic.body import CRITICAL, LIMIT, NO_MARK, RADIUS, Body, Mark, PlasticKernels, State
+from roughmdr.stages.plastic.body import CRITICAL, LIMIT, NO_MARK, RADIUS, Body, Mark, PlasticKernels, State, hertz
 
 TABOR_HARDNESS = 2.8
 """Hardness over yield strength [1]: D. Tabor, The Hardness of Metals, Oxford 1951; that of Kogut and Etsion."""
@@ -22,11 +22,22 @@ _CHANGE = 1e-6  # relative change of an indentation in differences: right to 1e-
 
 
 @njit
-def _prepare_jg(asperity: Floats, body: Body) -> None:
-    """Fill in the critical indentation (pi C Y/(2 E*))^2 R, C = 1.295 e^(0.736 nu), and that of first yielding."""
-    constant = 1.295 * math.exp(0.736 * body.poisson)
+def _jg_constant(body: Body) -> float:
+    """C of Jackson and Green [1], by which yielding begins."""
+    return 1.295 * math.exp(0.736 * body.poisson)
+
+
+@njit
+def _critical(constant: float, asperity: Floats, body: Body) -> float:
+    """Critical indentation (pi C Y/(2 E*))^2 R [m]."""
     root = math.pi * constant * body.yield_strength / (2.0 * body.effective_modulus)
-    asperity[CRITICAL] = root * root * asperity[RADIUS]
+    return float(root * root * asperity[RADIUS])
+
+
+@njit
+def _prepare_jg(asperity: Floats, body: Body) -> None:
+    """Fill in the critical indentation (pi C Y/(2 E*))^2 R, and that of first yielding."""
+    asperity[CRITICAL] = _critical(_jg_constant(body), asperity, body)
     asperity[LIMIT] = _JG_ELASTIC * asperity[CRITICAL]
 
 
@@ -34,16 +45,7 @@ def _prepare_jg(asperity: Floats, body: Body) -> None:
 def _prepare_ke(asperity: Floats, body: Body) -> None:
     """Fill in the critical indentation (pi K H/(2 E*))^2 R, K = 0.454 + 0.41 nu."""
     constant = (0.454 + 0.41 * body.poisson) * TABOR_HARDNESS
-    root = math.pi * constant * body.yield_strength / (2.0 * body.effective_modulus)
-    asperity[CRITICAL] = asperity[LIMIT] = root * root * asperity[RADIUS]
-
-
-@njit
-def _hertz(indentation: float, asperity: Floats, body: Body) -> State:
-    """The contact before it yields."""
-    radius = math.sqrt(asperity[RADIUS] * max(indentation, 0.0))
-    stiffness = 2.0 * body.effective_modulus * radius
-    return State(stiffness * indentation / 1.5, radius, stiffness, math.nan)
+    asperity[CRITICAL] = asperity[LIMIT] = _critical(constant, asperity, body)
 
 
 @njit
@@ -53,11 +55,10 @@ def _load_jg(deepest: float, asperity: Floats, body: Body) -> tuple[float, float
     w = deepest / critical
     exponent = 0.14 * math.exp(23.0 * body.yield_strength / body.effective_modulus)
     a = math.sqrt(radius * deepest * (w / _JG_ELASTIC) ** exponent)
-    hardness = _JG_HARDNESS * (1.0 - math.exp(-_JG_FALL * (a / radius) ** -_JG_POWER))  # over Y
-    constant = 1.295 * math.exp(0.736 * body.poisson)
+    hardness = _JG_HARDNESS * (1.0 - math.exp(-_JG_FALL * (a / radius) ** -_JG_POWER))  # H_G/Y [1]
     small, large = math.exp(-0.25 * w ** (5.0 / 12.0)), 1.0 - math.exp(-(w ** (5.0 / 9.0)) / 25.0)
-    unit = 4.0 / 3.0 * body.effective_modulus * math.sqrt(radius * critical) * critical
-    return unit * (small * w * math.sqrt(w) + 4.0 * hardness / constant * large * w), a
+    unit = hertz(critical, asperity, body).force
+    return unit * (small * w * math.sqrt(w) + 4.0 * hardness / _jg_constant(body) * large * w), a
 
 
 @njit
@@ -65,7 +66,7 @@ def _load_ke(deepest: float, asperity: Floats, body: Body) -> tuple[float, float
     """Force [N] and radius [m] of Kogut and Etsion beyond ``LIMIT``."""
     radius, critical = asperity[RADIUS], asperity[CRITICAL]
     w = deepest / critical
-    unit = 4.0 / 3.0 * body.effective_modulus * math.sqrt(radius * critical) * critical
+    unit = hertz(critical, asperity, body).force
     for end, force, power, area, power_of_area in _KE_RANGES:
         if w <= end:
             return unit * force * w**power, math.sqrt(radius * critical * area * w**power_of_area)
@@ -97,7 +98,8 @@ def _ends(deepest: float, mark: Mark, asperity: Floats, body: Body) -> tuple[flo
 def _state(indentation: float, rise: float, mark: Mark, asperity: Floats, body: Body) -> State:
     """The contact after the flat has risen from the deepest indentation."""
     if mark.first == 0.0:
-        return _hertz(indentation, asperity, body) if indentation > 0.0 else State(0.0, 0.0, 0.0, math.nan)
+        elastic = hertz(indentation, asperity, body)
+        return State(elastic.force, elastic.radius, elastic.stiffness, math.nan)
     deepest = indentation + rise
     if rise == 0.0:
         change = _CHANGE * deepest

@@ -33,6 +33,7 @@ from roughmdr.stages.plastic.body import (
     Mark,
     PlasticKernels,
     State,
+    hertz,
 )
 
 _RISE, _DECAY = 1.75, 4.4  # mean pressure of yielding, Y (1 + _RISE e^(-_DECAY d/R)): Zunker and Kamrin, from elements
@@ -96,12 +97,7 @@ def _elastic(indentation: float, asperity: Floats, body: Body) -> State:
             asperity[STIFFNESS_AT_TIP] * jkr.stiffness(v, 2.0) if v > 0.0 else -math.inf,
             asperity[PULL] * asperity[DEPTH] * jkr.energy(v, 2.0),
         )
-    if indentation <= 0.0:
-        return State(0.0, 0.0, 0.0, 0.0)
-    radius = math.sqrt(asperity[RADIUS] * indentation)
-    stiffness = 2.0 * body.effective_modulus * radius
-    force = stiffness * indentation / 1.5
-    return State(force, radius, stiffness, 0.4 * force * indentation)
+    return hertz(indentation, asperity, body)
 
 
 @njit
@@ -200,7 +196,7 @@ def state(indentation: float, rise: float, mark: Mark, asperity: Floats, body: B
     b, height, whole = mark.first, mark.second, mark.third
     x = 1.0 - rise / (height * whole)  # indentation of the springs over H
     stretch = _stretch(mark, body) if body.work > 0.0 else 0.0
-    phi, sine, cosine, tension, slope = 0.5 * math.pi, 1.0, 0.0, 1.0 - x, 1.0  # as long as all springs hold
+    phi, sine, cosine, tension, slope = 0.5 * math.pi, 1.0, 0.0, 1.0 - x, 1.0  # all springs hold
     if x + stretch < 1.0 and body.work > 0.0:
         phi = _angle(x, stretch)
         sine, cosine = math.sin(phi), math.cos(phi)
