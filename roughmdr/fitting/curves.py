@@ -111,12 +111,15 @@ def fit_each(curves: Curves, first: Model, command: str, *, shared: list[str], w
 
     with progress("fit", quiet=quiet, kind="curves") as display:
         display.add(total=len(curves))
-        found = over(partial(_read_and_searched, first), dict(enumerate(curves.values())))
+        measured = dict(enumerate(curves.values()))
         if shared:
+            found = over(partial(_read_and_searched, first), measured)
             alone = over(_covariance, found)
             found = {i: found[i] for i in alone}
             found = agree(found, alone, shared, partial(over, fitted), list(curves)) if alone else {}
-        fits = over(partial(assembled, command), found)
+            fits = over(partial(assembled, command), found)
+        else:
+            fits = over(partial(_fitted_alone, first, command), measured)
     return _together(list(curves), fits, failures, shared, first.start.toml)
 
 
@@ -126,6 +129,11 @@ def _read_and_searched(first: Model, measured: Any) -> Fitted:
     if (curve.control, curve.quantity) != (first.curve.control, first.curve.quantity):
         raise StoreError(f"{curve.origin}: must have {first.curve.control} and {first.curve.quantity}, as the first")
     return fitted(first.along(curve))
+
+
+def _fitted_alone(first: Model, command: str, measured: Any) -> Labelled:
+    """Return the result of a measurement that is like the first one; RoughmdrError where there is none."""
+    return assembled(command, _read_and_searched(first, measured))
 
 
 def _covariance(fit: Fitted) -> Floats:

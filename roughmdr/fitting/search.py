@@ -3,7 +3,6 @@
 import time
 from collections.abc import Mapping
 from functools import partial
-from types import MappingProxyType
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -44,7 +43,7 @@ class Fitted(NamedTuple):
 
     model: Model
     found: Found
-    compared: Mapping[str, Array] = MappingProxyType({})
+    compared: Mapping[str, Array] = {}
     """Arrays over ``model``, in the order of ``model_name``; none where nothing is compared."""
     doubts: tuple[str, ...] = ()
     """Which models the data do not tell from it, in words."""

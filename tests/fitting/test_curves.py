@@ -15,6 +15,7 @@ from tips import MODULUS, OFFSET, WORK, Tip
 import roughmdr as rm
 from roughmdr.errors import StoreError
 from roughmdr.fitting.columns import read_columns
+from roughmdr.fitting.curves import _EACH
 from roughmdr.fitting.fit import scene_to_fit
 from roughmdr.fitting.measured import read_measured
 from roughmdr.fitting.model import Model
@@ -108,10 +109,13 @@ def test_a_row_without_a_curve_is_refused(tmp_path: Path, missing: Any) -> None:
         rm.fit(tmp_path / "all.csv", TIP.scene(), FREE)
 
 
-@pytest.mark.large
-def test_the_numbers_are_the_same_for_any_number_of_workers() -> None:
+@pytest.mark.parametrize("curves_a_process", [1, pytest.param(_EACH, marks=pytest.mark.large)])
+def test_the_numbers_are_the_same_for_any_number_of_workers(
+    monkeypatch: pytest.MonkeyPatch, curves_a_process: int
+) -> None:
+    monkeypatch.setattr("roughmdr.fitting.curves._EACH", curves_a_process)
     tip, rng = Tip("jkr", 1e-7, 1e6), np.random.default_rng(1)
-    measured = [tip.measure(rng, 60, ("constant", 0.005), 2e-8) for _ in range(40)]
+    measured = [tip.measure(rng, 60, ("constant", 0.005), 2e-8) for _ in range(curves_a_process + 1)]
     one, two = (rm.fit(measured, tip.scene(), [MODULUS, WORK, OFFSET], workers=workers) for workers in (1, 2))
     same(one, two)
 

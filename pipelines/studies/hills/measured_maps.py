@@ -71,7 +71,7 @@ def _measure(surface: HeightMap) -> xr.Dataset:
             "surface_waves": ((), points * surface.dx / length, named("wavelengths a side")),
             "surface_resolution_error": ((), hills_error(length / surface.dx)),
         },
-        {"surface_solver": ["free elements", *FREE_METHODS]},
+        {"surface_solver": ["free elements", *FREE_METHODS], "fraction": list(FRACTIONS)},
     )
 
 
@@ -89,7 +89,7 @@ def report_files(result: xr.Dataset) -> str:
             force, area, stiffness = (errors_on_files(own, each).sel(surface_solver=method) for each in QUANTITIES)
             known = np.isfinite(force.to_numpy())
             mean = f"{100 * float(force.mean()):+.1f} %" if known.any() else "-"
-            last = percent(float(own["fraction"].to_numpy()[known].max(initial=-np.inf)), 0)
+            last = percent(float(own["fraction"].to_numpy()[known].max(initial=0.0)), 0)
             rows.append([name, method, percent(rms(force)), mean, percent(rms(area), 0), percent(rms(stiffness)), last])
     head = ["map", "method", "force, rms", "mean", "area, rms", "stiffness, rms", "answers up to"]
     return (
