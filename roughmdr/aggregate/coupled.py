@@ -141,9 +141,7 @@ def sum_coupled(problem: Problem, separation: Floats, names: list[str], reach: f
     assert interaction is not None
     ensemble, effective_modulus = problem.ensemble, problem.effective_modulus
     if work > 0.0:
-        from roughmdr.interaction.jkr import path
-
-        adhering = path.solve_path(ensemble, separation, effective_modulus, work, interaction, set(names), reach=reach)
+        adhering = problem.descent.along(separation, set(names), reach=reach)
         return _adhering(ensemble, separation, interaction, adhering)
     from roughmdr.interaction.solve import solve_path
 

@@ -76,12 +76,7 @@ def _coupled(problem: Problem, separation: Floats, step: int) -> tuple[Floats, F
     names, path = set[str](), separation[: step + 1]
     along: Adhering | Coupled
     if problem.asked_adhesion.work > 0.0:
-        from roughmdr.interaction.jkr.path import solve_path as solve_adhering
-
-        work = problem.asked_adhesion.work
-        along = solve_adhering(
-            problem.ensemble, path, problem.effective_modulus, work, problem.interaction, names, at=step
-        )
+        along = problem.descent.along(path, names, at=step)
     else:
         from roughmdr.interaction.solve import solve_path
 

@@ -2,6 +2,7 @@
 
 import math
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -18,6 +19,9 @@ from roughmdr.kernels.choose import choose
 from roughmdr.kernels.interface import Columns, Kernels
 from roughmdr.loading.path import LoadingPath
 from roughmdr.numerics.arguments import Floats
+
+if TYPE_CHECKING:
+    from roughmdr.interaction.jkr.path import Descent
 
 _MARGIN = 1e-9  # distance from the depth of detachment, over it: there a contact still holds
 
@@ -41,6 +45,14 @@ class Problem:
             check_placed(self.ensemble, self.interaction)
             if reason := reason_against_adhesion(self.interaction, self.asked_adhesion):
                 raise SceneError(f"interaction {reason}")
+
+    @cached_property
+    def descent(self) -> "Descent":
+        """The flat over adhesive contacts that feel each other in pairs."""
+        from roughmdr.interaction.jkr.path import Descent
+
+        assert self.interaction is not None
+        return Descent(self.ensemble, self.effective_modulus, self.asked_adhesion.work, self.interaction)
 
     @property
     def paired(self) -> bool:

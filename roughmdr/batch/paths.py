@@ -13,13 +13,14 @@ each other do so in pairs, as precisely as they are asked to.
 """
 
 import math
+from collections.abc import Callable
 
 import numpy as np
 
 from roughmdr.aggregate import LoadingPath, Problem
-from roughmdr.batch.realization import simulate_ensemble, simulate_realization
+from roughmdr.batch.realization import problem_of, simulate_ensemble, simulate_problem, simulate_realization
 from roughmdr.errors import Fault, RoughmdrError, SceneError
-from roughmdr.loading.first_reached import Law, OutOfReach, first_reached
+from roughmdr.loading.first_reached import OutOfReach, first_reached
 from roughmdr.loading.machine import MachinePath
 from roughmdr.model_error.refusal import Givens, likely_cause
 from roughmdr.numerics.arguments import Floats
@@ -88,10 +89,9 @@ def target_stop(scene: Scene, target: Target, start: float) -> float:
     scene, pairwise = scene.without_grid, scene.interaction if scene.needs_positions else None
     rtol = _RTOL if pairwise is None else pairwise.error
     try:
-        law = _law(scene, [target.variable], start)
-        stop = first_reached(law, target.value, start, max(distances), rtol, target.variable)
-        at_stop = (_law(scene, [name], start)(np.array([stop]))[0] for name in ("contact_fraction", "contact_count"))
-        fraction, contacts = map(float, at_stop)
+        law, name = _law(scene, start), target.variable
+        stop = first_reached(lambda h: law(h, [name])[0], target.value, start, max(distances), rtol, name)
+        fraction, contacts = law(np.array([stop]), ["contact_fraction", "contact_count"])[:, 0].tolist()
         if fraction > _MOST_OF_PATCH * contacts:
             givens = Givens(scene.effective_modulus, scene.work, scene.asperities.sigma, 1.0, 0.0)
             reason = f"is reached by contacts of {fraction / contacts:.2g} times the nominal area each"
@@ -105,17 +105,25 @@ def target_stop(scene: Scene, target: Target, start: float) -> float:
         raise _fault(target, f"cannot be looked for: {error}") from error
 
 
-def _law(scene: Scene, names: list[str], start: float) -> Law:
-    """Return the function: falling separations [m] -> the variable there, in loading from ``start`` [m]."""
-    source, variable = scene.asperities, names[0]
+def _law(scene: Scene, start: float) -> Callable[[Floats, list[str]], Floats]:
+    """Return the function: falling separations [m] -> variables [name, step] there, in loading from ``start`` [m].
 
-    def path(separations: Floats) -> LoadingPath:
-        return LoadingPath.along(np.append(start, separations), unload=False, adhesive=scene.work > 0.0)
+    Coupled contacts come from infinity, which is the same, and go on from where they have been.
+    """
+    source, begin = scene.asperities, np.empty(0) if scene.needs_positions else np.array([start])
+    expected = source.is_random and not scene.reason_against("expected")
+    drawn = None if expected else source.evenly_drawn(scene.seed, with_positions=scene.needs_positions)
+    problem = None if drawn is None else problem_of(scene, drawn)
 
-    if source.is_random and not scene.reason_against("expected"):
-        return lambda h: simulate_realization(scene, path(h), 0, names, "expected").variables[variable][1:]
-    ensemble = source.evenly_drawn(scene.seed, with_positions=scene.needs_positions)
-    return lambda h: simulate_ensemble(scene, path(h), ensemble, names).variables[variable][1:]
+    def law(separations: Floats, names: list[str]) -> Floats:
+        path = LoadingPath.along(np.append(begin, separations), unload=False, adhesive=scene.work > 0.0)
+        if problem is None:
+            found = simulate_realization(scene, path, 0, names, "expected")
+        else:
+            found = simulate_problem(scene, path, problem, names)
+        return np.array([found.variables[name][begin.size :] for name in names])
+
+    return law
 
 
 def _fault(target: Target, message: str) -> SceneError:

@@ -25,7 +25,19 @@ def simulate_ensemble(
 
     ``realization`` is the number of a whole realisation, and None of a part of one, beside which nothing is computed.
     """
-    problem = Problem(ensemble, scene.effective_modulus, scene.adhesion_model, scene.interaction)
+    return simulate_problem(scene, path, problem_of(scene, ensemble), variables, realization)
+
+
+def problem_of(scene: Scene, ensemble: Ensemble) -> Problem:
+    """Return an ensemble with the material, adhesion and interaction of a scene."""
+    return Problem(ensemble, scene.effective_modulus, scene.adhesion_model, scene.interaction)
+
+
+def simulate_problem(
+    scene: Scene, path: Path, problem: Problem, variables: list[str], realization: int | None = None
+) -> LoadSeparation:
+    """Return the law of a problem with the stages of a scene, ``realization`` as ``simulate_ensemble``."""
+    ensemble = problem.ensemble
 
     def law(path: Path, names: list[str]) -> LoadSeparation:
         assert not isinstance(path, LateralPath)  # which a stage resolves

@@ -12,7 +12,8 @@ from numpy.typing import NDArray
 from roughmdr.ensemble.ensemble import Ensemble
 from roughmdr.interaction.jkr.account import Account, Adhering
 from roughmdr.interaction.jkr.equilibrium import Drive, PairProblem, State, Step, alone
-from roughmdr.interaction.jkr.path import solve_path
+from roughmdr.interaction.jkr.front import Front, Piece
+from roughmdr.interaction.jkr.path import Descent
 from roughmdr.interaction.jkr.tangent import Tangent
 from roughmdr.interaction.settings import Boundary, Interaction
 
@@ -60,7 +61,32 @@ def follow(
     """Return the contacts along separations [d0]."""
     asked = Interaction(model="pairwise", boundary=boundary, order=order)
     separation = np.array(h, dtype=np.float64) * units.d0
-    return solve_path(ensemble, separation, units.modulus, units.work, asked, set(names.split()))
+    return Descent(ensemble, units.modulus, units.work, asked).along(separation, set(names.split()))
+
+
+def test_a_way_begins_where_one_before_has_been(monkeypatch: pytest.MonkeyPatch) -> None:
+    rng, gone = np.random.default_rng(4), list[float]()
+    at, z = rng.uniform(0.0, 30.0, (12, 2)), rng.normal(size=12)
+    ensemble, names = placed(UNIT, at, z), {"energy", "stiffness"}
+
+    def going(self: Front, state: State, h: float) -> tuple[State, list[Piece]]:
+        gone.append(state.separation * self.length / UNIT.d0)
+        return go(self, state, h)
+
+    go = Front.go
+    monkeypatch.setattr(Front, "go", going)
+    descent = Descent(ensemble, UNIT.modulus, UNIT.work, Interaction(model="pairwise", boundary="free"))
+    descent.along(np.linspace(3.0, -1.0, 9) * UNIT.d0, names)
+    for way in ([-0.2, -0.4, 3.0, -2.0], [1.2, 0.7], [-3.0, 3.0]):
+        gone.clear()
+        found = descent.along(np.array(way) * UNIT.d0, names)
+        assert gone[0] == pytest.approx({-0.2: 0.0, 1.2: 1.5, -3.0: -1.0}[way[0]], abs=1e-12)
+        alone = follow(ensemble, UNIT, way, order=2, names="energy stiffness")
+        for step, other in zip(found.steps, alone.steps, strict=True):
+            np.testing.assert_allclose(step.force, other.force, rtol=1e-10, atol=1e-10 * UNIT.force)
+            np.testing.assert_allclose(step.energy, other.energy, rtol=1e-9)
+            np.testing.assert_allclose(step.dissipated, other.dissipated, rtol=1e-9)
+        assert [each.size for each in found.avalanches] == [each.size for each in alone.avalanches]
 
 
 def fold_of_ring(g: float) -> float:

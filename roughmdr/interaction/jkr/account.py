@@ -60,6 +60,15 @@ class Account:
         """By the avalanches, and by the jumps of the machine beside them [J]."""
         self._parted = False
 
+    @property
+    def avalanches(self) -> tuple[Avalanche, ...]:
+        """The avalanches so far, in SI."""
+        return tuple(self._avalanches)
+
+    def begin(self, dissipated: float, avalanches: tuple[Avalanche, ...]) -> None:
+        """Begin with what was dissipated before [J], and the avalanches."""
+        self.dissipated, self._avalanches = dissipated, list(avalanches)
+
     def pass_over(self, piece: Piece) -> None:
         """Add a piece of the way: its avalanche, and its tension where the flat rises."""
         if self._tension is not None and piece.end.separation > piece.begin.separation:

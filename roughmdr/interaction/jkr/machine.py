@@ -184,7 +184,7 @@ def solve_on_machine(
     """Return adhesive contacts at the demands of a machine, whose flat comes from infinity; w [J/m2].
 
     A flat that a dead load pulls off is followed up to ``clear`` [m], or to where its last contact parts. Otherwise as
-    ``path.solve_path``.
+    ``path.Descent``.
     """
     legs, front = legs_of(path.demand), Front(ensemble, effective_modulus, work, interaction)
     account = Account(front, names, rises=any(leg.rises for leg in legs), reach=reach)
