@@ -44,7 +44,7 @@ def separations_of(
 
 def _met(law: ForceAndStiffness, asked: float, machine: Machine, top: float, h: float, error: float) -> float:
     """Return the separation below ``top`` at which a demand is met, from a first guess."""
-    low, high, sound, excess = -math.inf, top, top, math.inf
+    low, high, sound, force = -math.inf, top, top, 0.0
     for _ in range(_MAX_ROUNDS):
         h, force, stiffness = _sound(law, h, sound)
         excess = machine.weight * h - machine.compliance * force - asked
@@ -60,6 +60,8 @@ def _met(law: ForceAndStiffness, asked: float, machine: Machine, top: float, h: 
         if abs(new - h) <= _RTOL * (top - h) or new in (low, high):
             return h
         h = new
+    if low == -math.inf:
+        raise OutOfRange(f"path: the load is out of reach of these contacts, which bear at most {force:g} N")
     raise OutOfRange("path: the separations under the machine do not converge")
 
 

@@ -21,8 +21,10 @@ if TYPE_CHECKING:
     from roughmdr.stages.plastic.body import Body
     from roughmdr.stages.plastic.law import Asperities
 
-_SHAPES = ("paraboloid", "sphere")
-"""Shapes that yield as a sphere of their radius."""
+_ROUND, _OTHERS = ("paraboloid", "sphere"), ("cone", "flat_punch")
+"""Shapes that yield as a sphere of their radius; others, by model = "mdr" on a half-space."""
+_SPHERES = ("jackson-green", "kogut-etsion", "sphere")
+"""Models and bodies that are of spheres alone."""
 _Strength = Annotated[float, Quantity("Pa", above=0.0, example='"300 MPa"')]
 
 
@@ -73,14 +75,22 @@ class Plasticity(Stage):
     def check(self, scene: Given) -> None:
         """Raise a mismatch with shapes, sections and paths that its models do not know, and variables they lack."""
         shape, machine = scene.asperities.shape_name, scene.path.control != "separation"
-        if shape not in _SHAPES:
-            raise mismatch("asperities.shape", f"is {shape!r}; with [plasticity] it must be {' or '.join(_SHAPES)}")
+        asked = {"model": self.model, "body": self.body}
+        spheres = [f"plasticity.{key} = {value!r}" for key, value in asked.items() if value in _SPHERES]
+        shapes = _ROUND if spheres else (*_ROUND, *_OTHERS)
+        if shape not in shapes:
+            key = spheres[0] if spheres else "[plasticity]"
+            raise mismatch("asperities.shape", f"is {shape!r}; with {key} it must be {' or '.join(shapes)}")
         others = {"interaction": scene.interaction is not None}
         others |= {stage.key: stage.on_grid or not stage.flat for stage in scene.stages}
         for name, other in others.items():
             if other:
                 raise mismatch(name, "does not go with [plasticity]: its asperities are independent, under a flat")
         if scene.work > 0.0:
+            if shape == "cone":
+                raise mismatch(
+                    "adhesion", "does not go with [plasticity] and cones: their similarity is of dry contacts"
+                )
             if self.model != "mdr":
                 raise mismatch("adhesion", f"does not go with plasticity.model = {self.model!r}: 'mdr' alone adheres")
             if scene.adhesion_model.candidates != ("jkr",):
@@ -94,9 +104,9 @@ class Plasticity(Stage):
         if unknown := [name for name in scene.output.variables if name in missing]:
             raise mismatch("output.variables", f"{', '.join(unknown)} cannot be computed with this [plasticity]")
         known = scene.material.modulus is not None and scene.material.poisson is not None
-        if not known and (self.body == "sphere" or self.model != "mdr"):
-            reason = "body = 'sphere'" if self.body == "sphere" else f"model = {self.model!r}"
-            raise mismatch("material", f"needs modulus and poisson, which plasticity.{reason} depends on")
+        if not known and (spheres or shape == "cone"):
+            reason = f"{spheres[0]} depends" if spheres else "cones that yield depend"
+            raise mismatch("material", f"needs modulus and poisson, which {reason} on")
         if self.model != "mdr" and scene.material.poisson < 0.0:
             message = f"is {scene.material.poisson:g}; with plasticity.model = {self.model!r} it must be at least 0"
             raise mismatch("material.poisson", message)
@@ -151,7 +161,7 @@ class Plasticity(Stage):
         if drawn:
             from roughmdr.stages.plastic.drawn import prepare
 
-            prepare(self.model, self.constants(scene))
+            prepare(self.model, self.constants(scene), scene.asperities.shape_name)
         else:
             from roughmdr.stages.plastic.mean import MeanAsperities
 

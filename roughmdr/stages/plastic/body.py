@@ -12,9 +12,9 @@ from roughmdr.numerics.jit import njit
 
 # Rows of the numbers of an asperity.
 RADIUS, CRITICAL, LIMIT, SQUARE, BEFORE, DEPTH, TIP, PULL, STIFFNESS_AT_TIP = range(9)
-"""Radius R [m]; critical indentation [m] of fitted formulas; indentation at which a contact yields [m], the square of
-its radius there [m2] and the energy that it stores there [J]; scales of its JKR contact before: depth [m], radius [m],
-force [N] and stiffness [N/m]."""
+"""Radius R [m], or what else the shape is made of; critical indentation [m] of fitted formulas; indentation at which a
+contact yields [m], the square of its radius there [m2] and the energy that it stores there [J]; scales of its JKR
+contact before: depth [m], radius [m], force [N] and stiffness [N/m]."""
 ROWS = 9
 
 
@@ -63,6 +63,10 @@ class State(NamedTuple):
 class PlasticKernels(ModuleType):
     """Kernels of a contact that yields: compiled functions of an ``asperity``, ``ROWS`` numbers in a row."""
 
+    parameter: str = "radius"
+    """Name of what a shape is made of, which is in the first row."""
+    round: bool = True
+    """Whether asperities are spheres or paraboloids, whose models end at some depth and width over the radius."""
     adhesive: bool
     kinks: tuple[float, ...]
     """Indentations over ``LIMIT`` where the law of deeper contacts has kinks or jumps; the last is infinite."""
@@ -99,8 +103,10 @@ def hertz(indentation: float, asperity: Floats, body: Body) -> State:
     return State(force, radius, stiffness, 0.4 * force * indentation)
 
 
-def check_depth(deepest: Floats, rows: Floats) -> None:
-    """Raise TooMuchContact where asperities that yield, [asperity, row], are pressed too deep [m] for their radius."""
+def check_depth(kernels: PlasticKernels, deepest: Floats, rows: Floats) -> None:
+    """Raise TooMuchContact where round asperities that yield, [asperity, row], are pressed too deep [m]."""
+    if not kernels.round:
+        return
     beyond = np.where(deepest > rows[:, LIMIT], deepest / rows[:, RADIUS], 0.0)
     if (beyond > _DEEPEST).any():
         worst = int(np.argmax(beyond))
@@ -110,7 +116,7 @@ def check_depth(deepest: Floats, rows: Floats) -> None:
         )
 
 
-def range_warnings(contact_radius: Floats, rows: Floats) -> tuple[str, ...]:
+def range_warnings(kernels: PlasticKernels, contact_radius: Floats, rows: Floats) -> tuple[str, ...]:
     """Warn of contacts, whose radii [m] are given, that are wider than models of yielding were fitted to."""
     told = f"contacts wider than {_WIDEST:g} of the radius of their asperity, where fits of yielding end"
-    return (told,) if (contact_radius > _WIDEST * rows[:, RADIUS]).any() else ()
+    return (told,) if kernels.round and (contact_radius > _WIDEST * rows[:, RADIUS]).any() else ()

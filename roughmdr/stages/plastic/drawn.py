@@ -33,15 +33,16 @@ class DrawnAsperities:
     """Without a rule over the radii there is nothing to refine."""
 
     def __init__(self, problem: Problem, model: str, body: Body) -> None:
-        """Take the ensemble of a problem, whose shapes have a radius, and the bodies."""
+        """Take the ensemble of a problem, and the bodies."""
         self._problem, self._model, self._body = problem, model, body
-        self._kernels, self._height = kernels_of(model, body), problem.ensemble.height
+        self._kernels = kernels_of(model, body, problem.ensemble.shape)
+        self._height = problem.ensemble.height
         self.depth, self.nominal_area = problem.depth if self._height.size else 0.0, problem.ensemble.nominal_area
         self.first_touch = float(self._height.max()) if self._height.size else 0.0
 
     @cached_property
     def _rows(self) -> Floats:
-        return rows_of(self._kernels, self._problem.ensemble.parameters["radius"], self._body)
+        return rows_of(self._kernels, self._problem.ensemble.parameters[self._kernels.parameter], self._body)
 
     def _along(self, separation: Floats, rows: set[int]) -> Sum:
         return add_up(self._kernels, self._height, self._rows, separation, self._body, rows)
@@ -59,7 +60,7 @@ class DrawnAsperities:
         problem, separation = self._problem, path.separation
         problem.check_asked(names)
         closest = float(separation.min())
-        check_depth(self._height - closest, self._rows)
+        check_depth(self._kernels, self._height - closest, self._rows)
         found = self._along(separation, rows_for(problem, names))
 
         def radius_at(separation: float) -> Floats:
@@ -70,7 +71,11 @@ class DrawnAsperities:
         )
         pull_off = self._pull_off(separation, found.total[FORCE])
         visits = int(np.searchsorted(-self._height, -np.minimum.accumulate(separation)).sum())
-        warnings = (*law.warnings, *range_warnings(found.closest[0], self._rows), *self._flowing(closest))
+        warnings = (
+            *law.warnings,
+            *range_warnings(self._kernels, found.closest[0], self._rows),
+            *self._flowing(closest),
+        )
         law = law._replace(visits=visits, pull_off=pull_off, warnings=warnings)
         return law._replace(yielding=lambda: self.shares(closest))
 
@@ -94,8 +99,9 @@ class DrawnAsperities:
         touched = np.flatnonzero(self._height > separation.min())
         each = -(-max(touched.size, 1) // _MOST_TOLD)
         some = touched[each // 2 :: each]
-        radius = self._problem.ensemble.parameters["radius"][some]
-        return spread(self._model, self._body, self._height[some], radius, separation)
+        ensemble = self._problem.ensemble
+        parameter = ensemble.parameters[self._kernels.parameter][some]
+        return spread(self._model, self._body, ensemble.shape, self._height[some], parameter, separation)
 
     def _yielded(self, closest: float) -> NDArray[np.bool_]:
         return np.asarray(self._height - closest > self._rows[:, LIMIT])
@@ -124,12 +130,12 @@ class DrawnAsperities:
         return PullOff(found.force, float(found.path.separation[-1]), float(there[COUNT]), float(there[AREA]))
 
 
-def prepare(model: str, body: Body) -> None:
+def prepare(model: str, body: Body, shape: str) -> None:
     """Compile what the law of a model needs, before several threads or a clock need it."""
-    kernels, height, radius = kernels_of(model, body), np.zeros(1), np.ones(1)
-    rows = rows_of(kernels, radius, body)
+    kernels, height, ones = kernels_of(model, body, shape), np.zeros(1), np.ones(1)
+    rows = rows_of(kernels, ones, body)
     add_up(kernels, height, rows, height, body, {FORCE})
     if kernels.adhesive:
         partings(kernels, height, rows, 0.0, body)
         prepare_pull_off()
-    spread(model, body, height, radius, height)
+    spread(model, body, shape, height, ones, height)

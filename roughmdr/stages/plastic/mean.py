@@ -51,8 +51,9 @@ _OF_RESULT = 24  # nodes of the first rule, which gives the result
 _ORDERS = (4, 8, 16, 32, 64)
 """Scores of the rule over the radii, one after the other."""
 _RTOL = 1e-7  # change of the force, over the largest, at which the rule is fine enough: kinks make it converge slowly
+_DOUBT = 4.0  # error of a rule over its last change: kinks and jumps over a shape parameter make it fall slowly
 _LEAST = 1e-8  # least error of such a rule: orders may agree by chance where fitted laws have kinks
-_GROWTH = 1.5  # power of the indentation by which forces grow at most
+_GROWTH = 2.0  # power of the indentation by which forces grow at most: those of cones
 _HALVINGS = 60  # halvings that locate the edge of contact
 _BESIDE = 1e-9  # distance over the interval at which a contact has just yielded
 _MOST_DRAWN = 1000  # asperities drawn evenly to tell which yield and how models differ: to some percent of both
@@ -177,9 +178,9 @@ class MeanAsperities:
     """The mean over asperities of a source that yield by a model, without adhesion."""
 
     def __init__(self, source: Source, model: str, body: Body) -> None:
-        """Take the source, whose shapes have a radius, and the bodies."""
+        """Take the source and the bodies."""
         self._source, self._model, self._body = source, model, body
-        self._kernels = kernels_of(model, body)
+        self._kernels = kernels_of(model, body, source.shape_name)
         self.nominal_area = source.nominal_area
         self.order, self._nodes = 1, cache(self._nodes_by)  # a machine asks for them many times
 
@@ -196,7 +197,7 @@ class MeanAsperities:
     @np.errstate(all="ignore")  # numbers that no float can hold are refused at the end
     def _nodes_by(self, order: int) -> list[_Node]:
         nodes = self._source.nodes(Rule.smooth(order))
-        rows = rows_of(self._kernels, nodes.parameters["radius"], self._body)
+        rows = rows_of(self._kernels, nodes.parameters[self._kernels.parameter], self._body)
         tables = {heights: HeightTable.of(heights) for heights in dict.fromkeys(nodes.heights)}
         parts = zip(nodes.weights.tolist(), nodes.heights, rows, strict=True)
         return [_Node(fraction, tables[heights], row) for fraction, heights, row in parts]
@@ -253,7 +254,7 @@ class MeanAsperities:
         law = law_of_means(problem, names, total, radii, limits, JkrValidity(), plasticity_error=difference)
         apart = ends_apart(unloadings(separation, total[FORCE]), total[COUNT])
         pull_off = WITHOUT_TENSION if apart else PullOff()
-        wide = range_warnings(radii, np.array([node.asperity for node in self._nodes(self.order)]))
+        wide = range_warnings(self._kernels, radii, np.array([node.asperity for node in self._nodes(self.order)]))
         told = (*warnings, *wide, *law.warnings)
         return law._replace(warnings=told, pull_off=pull_off, yielding=lambda: self._drawn.shares(closest))
 
@@ -270,7 +271,7 @@ class MeanAsperities:
                 largest = np.abs(total).max(axis=1)
                 changes.append(np.abs(total - before).max(axis=1) / np.where(largest > 0.0, largest, 1.0))
                 if changes[-1][FORCE] <= _RTOL and order == self.order:
-                    return total, np.maximum(changes[-1], _LEAST)
+                    return total, np.maximum(_DOUBT * changes[-1], _LEAST)
             before = total
         return total, np.sum(changes[-2:], axis=0)
 
@@ -282,7 +283,7 @@ class MeanAsperities:
             deepest.append(highest - closest)
             mark = self._kernels.mark(deepest[-1], asperity, self._body)
             radii.append(self._kernels.state(deepest[-1], 0.0, mark, asperity, self._body).radius)
-        check_depth(np.array(deepest), np.array([node.asperity for node in nodes]))
+        check_depth(self._kernels, np.array(deepest), np.array([node.asperity for node in nodes]))
         return np.array(radii)
 
     @cached_property

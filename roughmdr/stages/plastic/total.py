@@ -133,10 +133,10 @@ def _compiled(kernels: PlasticKernels) -> tuple[Callable[..., None], ...]:
     return specialise(_loop, kernels), specialise(_parting_loop, kernels), specialise(_rows_loop, kernels)
 
 
-def rows_of(kernels: PlasticKernels, radius: Floats, body: Body) -> Floats:
-    """Return the numbers of each asperity, [asperity, row], from its radius [m]."""
-    rows = np.zeros((radius.size, ROWS))
-    rows[:, OWN_RADIUS] = radius
+def rows_of(kernels: PlasticKernels, parameter: Floats, body: Body) -> Floats:
+    """Return the numbers of each asperity, [asperity, row], from its ``kernels.parameter``."""
+    rows = np.zeros((parameter.size, ROWS))
+    rows[:, OWN_RADIUS] = parameter
     with np.errstate(all="ignore"):  # numbers that no float holds are refused with the totals
         _compiled(kernels)[2](rows, body)
     return rows
