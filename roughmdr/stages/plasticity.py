@@ -25,6 +25,12 @@ _ROUND, _OTHERS = ("paraboloid", "sphere"), ("cone", "flat_punch")
 """Shapes that yield as a sphere of their radius; others, by model = "mdr" on a half-space."""
 _SPHERES = ("jackson-green", "kogut-etsion", "sphere")
 """Models and bodies that are of spheres alone."""
+_PAPERS = {
+    "paraboloid": ("Zunker2024", "JacksonGreen2005", "KogutEtsion2002", "Etsion2005"),
+    "cone": ("Zunker2024", "Johnson1985", "OliverPharr1992"),
+    "flat_punch": ("Shield1955", "EasonShield1960"),
+}
+"""Keys of papers in report/papers.bib, by shape; others have those of paraboloids."""
 _Strength = Annotated[float, Quantity("Pa", above=0.0, example='"300 MPa"')]
 
 
@@ -45,12 +51,7 @@ class Plasticity(Stage):
     unlike = "contacts that yield"
     replaces_contacts = True
     visit_seconds = 8e-8  # 4.5e-8 without adhesion, 1.9e-7 with it
-    papers: ClassVar[Mapping[str, str]] = {
-        "Zunker2024": "yielding",
-        "JacksonGreen2005": "yielding",
-        "KogutEtsion2002": "yielding",
-        "Etsion2005": "yielding",
-    }
+    papers: ClassVar[Mapping[str, str]] = {key: "yielding" for papers in _PAPERS.values() for key in papers}
 
     yield_strength: _Strength | None = None
     """Yield strength of the softer body, which is [material]."""
@@ -141,6 +142,12 @@ class Plasticity(Stage):
         except PydanticCustomError:
             return False
         return not any(stage.alone(scene, stage) for stage in scene.stages)
+
+    @classmethod
+    def cites(cls, table: Mapping[str, Any], variables: list[str]) -> Mapping[str, str]:
+        """Return the papers on the shape, where a scene has the section."""
+        papers = _PAPERS.get(table.get("asperities", {}).get("shape"), _PAPERS["paraboloid"])
+        return dict.fromkeys(papers, "yielding") if cls.is_in(table) else {}
 
     def constants(self, scene: Given) -> "Body":
         """Return the constants of the bodies."""

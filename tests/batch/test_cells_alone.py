@@ -89,6 +89,11 @@ KINDS: dict[str, dict[str, Any]] = {
     "yielding spheres": elastic(
         material={"modulus": "3 MPa", "poisson": 0.4}, plasticity={"hardness": 6e4, "body": "sphere"}
     ),
+    "yielding cones": elastic(
+        asperities={**{k: v for k, v in FEW.items() if k != "radius"}, "shape": "cone", "slope": 0.1},
+        material={"modulus": "3 MPa", "poisson": 0.4},
+        plasticity={"yield_strength": 2e4},
+    ),
     "viscoelastic": elastic(
         viscoelastic={
             "relaxation": [{"time": 1.0, "share": 0.5}], "speed": 1e-6, "retraction_speed": 2e-6, "dwell": 1.0,

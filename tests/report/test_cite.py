@@ -22,6 +22,8 @@ from roughmdr.stages import STAGES
 BIB = (Path(rm.__file__).parent / "report/papers.bib").read_text("ascii")
 WITHOUT_DOI = {
     "Etsion2005",
+    "Shield1955",
+    "EasonShield1960",
     "Barber2003",
     "Cattaneo1938",
     "Mindlin1949",

@@ -119,6 +119,17 @@ BASES: dict[str, dict[str, Any]] = {
     },
     "yielding": {**SCENE, "plasticity": {"yield_strength": "1 MPa", "model": "mdr", "body": "sphere"}},
     "yielding by hardness": {**SCENE, "plasticity": {"hardness": "1 MPa"}},
+    "yielding cones": {
+        **{key: value for key, value in SCENE.items() if key != "adhesion"},
+        "material": {"modulus": "3 MPa", "poisson": 0.49},
+        "asperities": {**_DRAWN, "count": 20, "shape": "cone", "slope": 0.1},
+        "plasticity": {"yield_strength": "1 kPa"},
+    },
+    "yielding punches": {
+        **SCENE,
+        "asperities": {**_DRAWN, "count": 20, "shape": "flat_punch", "radius": "2 um"},
+        "plasticity": {"hardness": "1 MPa"},
+    },
     "adhesion by its strength": {
         **SCENE,
         "adhesion": {**SCENE["adhesion"], "model": "auto", "strength": 1e7, "error": 0.1},

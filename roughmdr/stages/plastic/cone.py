@@ -73,7 +73,7 @@ def _lost(deepest: float, mark: Mark, asperity: Floats, body: Body) -> float:
 def kernels(*, adhesive: bool = False, name: str = "cone", share: float = _SHARE, rigid: float = 1.0) -> PlasticKernels:
     """Return the kernels: ``share`` is the mean pressure above the core's over Y, ``rigid`` d/(S b) of rigid cones."""
     found = PlasticKernels(name)
-    found.share, found.rigid, found.parameter, found.round = share, rigid, "slope", False
+    vars(found).update(parameter="slope", round=False, share=share, rigid=rigid)
     found.adhesive, found.kinks, found.prepare = adhesive, (math.inf,), specialise(_prepare, found)
     found.mark, found.ends, found.state, found.lost = _mark, mdr.ends, _state, _lost
     return found

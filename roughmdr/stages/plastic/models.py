@@ -24,9 +24,9 @@ kernel = PlasticKernels("kernel")
 
 def kernels_of(model: str, body: Body, shape: str = "paraboloid") -> PlasticKernels:
     """Return the kernels of a model for bodies that adhere or do not, and a shape of asperities."""
-    if shape in _FLOWING:
-        return _FLOWING[shape].kernels(adhesive=body.work > 0.0)
-    return mdr.kernels(adhesive=body.work > 0.0) if model == "mdr" else empirical.kernels(model)
+    family = _FLOWING.get(shape, mdr)
+    found: PlasticKernels = family.kernels(adhesive=body.work > 0.0) if model == "mdr" else empirical.kernels(model)
+    return found
 
 
 def spread(model: str, body: Body, shape: str, height: Floats, parameter: Floats, separation: Floats) -> Floats:
@@ -38,10 +38,8 @@ def spread(model: str, body: Body, shape: str, height: Floats, parameter: Floats
     poisson = _USUAL_POISSON if math.isnan(body.poisson) else body.poisson
     dry = body._replace(work=0.0, poisson=poisson)
     others = (kernels_of(name, dry) for name in MODELS if name != model)
-    rivals = _FLOWING[shape].rivals() if shape in _FLOWING else others
-    own, *forces = (
-        _compiled(kernels)(height, parameter, separation, dry) for kernels in (kernels_of(model, dry, shape), *rivals)
-    )
+    compared = kernels_of(model, dry, shape), *(_FLOWING[shape].rivals() if shape in _FLOWING else others)
+    own, *forces = (_compiled(kernels)(height, parameter, separation, dry) for kernels in compared)
     largest = float(own.max(initial=0.0))
     return np.asarray(np.abs(forces - own).max(axis=0) / (largest if largest > 0.0 else 1.0))
 

@@ -72,9 +72,9 @@ def _saturated_state(indentation: float, rise: float, mark: Mark, asperity: Floa
 def kernels(*, adhesive: bool, name: str = "flat_punch", pressure: float = LIMIT_PRESSURE) -> PlasticKernels:
     """Return the kernels for a limit pressure over Y."""
     found = PlasticKernels(f"{name}_adhesive" if adhesive else name)
-    found.pressure, found.round, found.adhesive, found.kinks = pressure, False, adhesive, (math.inf,)
-    found.prepare, found.mark, found.ends, found.state = specialise(_prepare, found), _mark, _ends, _state
-    found.lost = _lost
+    vars(found).update(round=False, pressure=pressure)
+    found.adhesive, found.kinks, found.prepare = adhesive, (math.inf,), specialise(_prepare, found)
+    found.mark, found.ends, found.state, found.lost = _mark, _ends, _state, _lost
     return found
 
 
