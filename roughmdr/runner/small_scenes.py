@@ -53,6 +53,9 @@ def small_scenes() -> Iterator[dict[str, Any]]:
         yield from _along_paths(f"mdr_table, {model}", {**section, "asperities": table})
     for name, sections in _SECTIONS.items():
         yield _scene(name, sections)
+    metal, yielding = {"modulus": "1 GPa", "poisson": 0.3}, _SECTIONS["plasticity"]
+    for shape in ("cone", "flat_punch"):
+        yield _scene(f"plasticity, {shape}", {**yielding, "material": metal, "asperities": _asperities(shape)})
 
 
 def _along_paths(title: str, sections: dict[str, Any]) -> Iterator[dict[str, Any]]:

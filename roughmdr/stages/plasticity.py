@@ -178,7 +178,16 @@ class Plasticity(Stage):
 
     def law(self, scene: Given, contacts: Contacts) -> Law:
         """Return the law of contacts that yield; OutOfRange where one is not representable."""
-        asperities = self._asperities(scene, contacts)
+        asperities: Asperities
+        body = self.constants(scene)
+        if contacts.problem is not None:
+            from roughmdr.stages.plastic.drawn import DrawnAsperities
+
+            asperities = DrawnAsperities(contacts.problem, self.model, body)
+        else:
+            from roughmdr.stages.plastic.mean import MeanAsperities
+
+            asperities = MeanAsperities(scene.asperities, self.model, body)
 
         def law(path: "Path", names: list[str]) -> "LoadSeparation":
             from roughmdr.loading.lateral import LateralPath
@@ -188,14 +197,3 @@ class Plasticity(Stage):
             return plastic_law(asperities, path, names)
 
         return law
-
-    def _asperities(self, scene: Given, contacts: Contacts) -> "Asperities":
-        """Return the asperities: those drawn, or the mean over them."""
-        body = self.constants(scene)
-        if contacts.problem is not None:
-            from roughmdr.stages.plastic.drawn import DrawnAsperities
-
-            return DrawnAsperities(contacts.problem, self.model, body)
-        from roughmdr.stages.plastic.mean import MeanAsperities
-
-        return MeanAsperities(scene.asperities, self.model, body)

@@ -63,8 +63,6 @@ def _state(indentation: float, rise: float, mark: Mark, asperity: Floats, body: 
 @njit
 def _lost(deepest: float, mark: Mark, asperity: Floats, body: Body) -> float:
     """Energy [J] that yielding has taken: the work, a third of force times depth, less what is stored."""
-    if mark.first == 0.0:
-        return 0.0
     dent = _state(deepest, 0.0, mark, asperity, body)
     return dent.force * deepest / 3.0 - dent.stored
 

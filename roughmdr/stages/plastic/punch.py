@@ -6,6 +6,7 @@ sqrt(2 pi b w/E*) of the springs (K. Kendall, J. Phys. D 4 (1971) 1186).
 """
 
 import math
+from typing import Any
 
 from roughmdr.numerics.arguments import Floats
 from roughmdr.numerics.jit import njit, once, specialise
@@ -51,8 +52,6 @@ def _state(indentation: float, rise: float, mark: Mark, asperity: Floats, body: 
 @njit
 def _lost(deepest: float, mark: Mark, asperity: Floats, body: Body) -> float:
     """Energy [J] that flow has taken: limit load times flow."""
-    if mark.first == 0.0:
-        return 0.0
     return float(2.0 * body.effective_modulus * mark.first * mark.second * (deepest - mark.second))
 
 
@@ -69,18 +68,18 @@ def _saturated_state(indentation: float, rise: float, mark: Mark, asperity: Floa
 
 
 @once
-def kernels(*, adhesive: bool, name: str = "flat_punch", pressure: float = LIMIT_PRESSURE) -> PlasticKernels:
+def kernels(
+    *, adhesive: bool, name: str = "flat_punch", pressure: float = LIMIT_PRESSURE, state: Any = _state
+) -> PlasticKernels:
     """Return the kernels for a limit pressure over Y."""
     found = PlasticKernels(f"{name}_adhesive" if adhesive else name)
     vars(found).update(round=False, pressure=pressure)
     found.adhesive, found.kinks, found.prepare = adhesive, (math.inf,), specialise(_prepare, found)
-    found.mark, found.ends, found.state, found.lost = _mark, _ends, _state, _lost
+    found.mark, found.ends, found.state, found.lost = _mark, _ends, state, _lost
     return found
 
 
 def rivals() -> tuple[PlasticKernels, ...]:
     """Return kernels of other estimates: a rough punch, and one whose edge yields at once."""
-    saturated = PlasticKernels("flat_punch_saturated")
-    saturated.prepare, saturated.mark = kernels(adhesive=False).prepare, _mark
-    saturated.state = _saturated_state
-    return kernels(adhesive=False, name="flat_punch_rough", pressure=_ROUGH_PRESSURE), saturated
+    rough = kernels(adhesive=False, name="flat_punch_rough", pressure=_ROUGH_PRESSURE)
+    return rough, kernels(adhesive=False, name="flat_punch_saturated", state=_saturated_state)
