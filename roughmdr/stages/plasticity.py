@@ -77,11 +77,11 @@ class Plasticity(Stage):
         """Raise a mismatch with shapes, sections and paths that its models do not know, and variables they lack."""
         shape, machine = scene.asperities.shape_name, scene.path.control != "separation"
         asked = {"model": self.model, "body": self.body}
-        spheres = [f"plasticity.{key} = {value!r}" for key, value in asked.items() if value in _SPHERES]
-        shapes = _ROUND if spheres else (*_ROUND, *_OTHERS)
+        of_spheres = next((f"plasticity.{key} = {value!r}" for key, value in asked.items() if value in _SPHERES), "")
+        shapes = _ROUND if of_spheres else (*_ROUND, *_OTHERS)
         if shape not in shapes:
-            key = spheres[0] if spheres else "[plasticity]"
-            raise mismatch("asperities.shape", f"is {shape!r}; with {key} it must be {' or '.join(shapes)}")
+            told = f"is {shape!r}; with {of_spheres or '[plasticity]'} it must be {' or '.join(shapes)}"
+            raise mismatch("asperities.shape", told)
         others = {"interaction": scene.interaction is not None}
         others |= {stage.key: stage.on_grid or not stage.flat for stage in scene.stages}
         for name, other in others.items():
@@ -89,9 +89,7 @@ class Plasticity(Stage):
                 raise mismatch(name, "does not go with [plasticity]: its asperities are independent, under a flat")
         if scene.work > 0.0:
             if shape == "cone":
-                raise mismatch(
-                    "adhesion", "does not go with [plasticity] and cones: their similarity is of dry contacts"
-                )
+                raise mismatch("adhesion", "does not go with [plasticity] and cones, whose similarity it would end")
             if self.model != "mdr":
                 raise mismatch("adhesion", f"does not go with plasticity.model = {self.model!r}: 'mdr' alone adheres")
             if scene.adhesion_model.candidates != ("jkr",):
@@ -105,9 +103,10 @@ class Plasticity(Stage):
         if unknown := [name for name in scene.output.variables if name in missing]:
             raise mismatch("output.variables", f"{', '.join(unknown)} cannot be computed with this [plasticity]")
         known = scene.material.modulus is not None and scene.material.poisson is not None
-        if not known and (spheres or shape == "cone"):
-            reason = f"{spheres[0]} depends" if spheres else "cones that yield depend"
-            raise mismatch("material", f"needs modulus and poisson, which {reason} on")
+        if not known and (of_spheres or shape == "cone"):
+            raise mismatch(
+                "material", f"needs modulus and poisson, on which {of_spheres or 'a cone that yields'} depends"
+            )
         if self.model != "mdr" and scene.material.poisson < 0.0:
             message = f"is {scene.material.poisson:g}; with plasticity.model = {self.model!r} it must be at least 0"
             raise mismatch("material.poisson", message)

@@ -24,7 +24,7 @@ _SLOPE, _WIDTH, _HEIGHT = RADIUS, SQUARE, BEFORE
 _FIRST_YIELD = 0.5  # least mean pressure of yielding, over Y: Johnson 1985, section 6.2
 _FROM_TOUCH = 1e-250  # indentation [m] at which cones yield that flow from first touch on: some dents are as deep
 _SHARE = 2.0 / 3.0  # mean pressure above that of the core, over Y: the deviator at its edge
-_PILED_UP = 0.8  # d/(S b) of rigid cones with piled-up edges: the flow that gives spheres b^2 = 1.45 (2 R d)
+_PILED_UP = 0.8  # d/(S b) of rigid cones: the flow that gives spheres b^2 = 1.45 (2 R d), Biwa and Storakers 1995
 
 kernel = PlasticKernels("kernel")
 """Stands for the kernels in ``_prepare``."""

@@ -5,7 +5,6 @@ from collections.abc import Iterator
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
 from roughmdr.aggregate.compute import law_of_totals, rows_for
 from roughmdr.aggregate.law import LoadSeparation
@@ -35,8 +34,7 @@ class DrawnAsperities:
     def __init__(self, problem: Problem, model: str, body: Body) -> None:
         """Take the ensemble of a problem, and the bodies."""
         self._problem, self._model, self._body = problem, model, body
-        self._kernels = kernels_of(model, body, problem.ensemble.shape)
-        self._height = problem.ensemble.height
+        self._kernels, self._height = kernels_of(model, body, problem.ensemble.shape), problem.ensemble.height
         self.depth, self.nominal_area = problem.depth if self._height.size else 0.0, problem.ensemble.nominal_area
         self.first_touch = float(self._height.max()) if self._height.size else 0.0
 
@@ -71,11 +69,8 @@ class DrawnAsperities:
         )
         pull_off = self._pull_off(separation, found.total[FORCE])
         visits = int(np.searchsorted(-self._height, -np.minimum.accumulate(separation)).sum())
-        warnings = (
-            *law.warnings,
-            *range_warnings(self._kernels, found.closest[0], self._rows),
-            *self._flowing(closest),
-        )
+        wide = range_warnings(self._kernels, found.closest[0], self._rows)
+        warnings = (*law.warnings, *wide, *self._flowing(closest))
         law = law._replace(visits=visits, pull_off=pull_off, warnings=warnings)
         return law._replace(yielding=lambda: self.shares(closest))
 
@@ -103,13 +98,11 @@ class DrawnAsperities:
         parameter = ensemble.parameters[self._kernels.parameter][some]
         return spread(self._model, self._body, ensemble.shape, self._height[some], parameter, separation)
 
-    def _yielded(self, closest: float) -> NDArray[np.bool_]:
-        return np.asarray(self._height - closest > self._rows[:, LIMIT])
-
     def shares(self, closest: float) -> dict[str, float]:
         """Return the shares of the contacts, and of the load of pushing ones, that have yielded at a separation [m]."""
         radius, force = self._along(np.array([closest]), {FORCE}).closest
-        yielded, touching, pushing = self._yielded(closest), radius > 0.0, float(force.sum(where=force > 0.0))
+        yielded = self._height - closest > self._rows[:, LIMIT]
+        touching, pushing = radius > 0.0, float(force.sum(where=force > 0.0))
         contacts = float(yielded[touching].mean()) if touching.any() else 0.0
         load = float(force[yielded].sum()) / pushing if pushing > 0.0 else 0.0
         return {"plastic_contact_fraction": contacts, "plastic_load_fraction": load}

@@ -79,14 +79,8 @@ def _mark(deepest: float, asperity: Floats, body: Body) -> Mark:
     if deepest <= asperity[LIMIT]:
         return NO_MARK
     force, radius = kernel.load(deepest, asperity, body)
-    return Mark(force, radius, _left(deepest, asperity))
-
-
-@njit
-def _left(deepest: float, asperity: Floats) -> float:
-    """Indentation [m] that is left where no load is: w (1 - w^-0.28) (1 - w^-0.69) of Etsion, Kligerman and Kadin."""
     w = deepest / asperity[CRITICAL]
-    return float(deepest * (1.0 - w**-0.28) * (1.0 - w**-0.69))
+    return Mark(force, radius, deepest * (1.0 - w**-0.28) * (1.0 - w**-0.69))  # Etsion, Kligerman and Kadin
 
 
 @njit

@@ -355,7 +355,7 @@ PUNCHES = {key: value for key, value in PUNCHES.items() if value is not None}
             "model = 'jackson-green' it must be paraboloid or",
         ),
         ({"plasticity": {"hardness": 1e9, "body": "sphere"}}, "body = 'sphere' it must be paraboloid or sphere"),
-        ({"material": {"effective_modulus": 1e9}}, "material: needs modulus and poisson, which cones that yield"),
+        ({"material": {"effective_modulus": 1e9}}, "material: needs modulus and poisson, on which a cone that yields"),
         ({"asperities": {**PUNCHES, "shape": "truncated_cone", "flat_radius": 1e-6, "slope": 0.1}}, "asperities.shape"),
     ],
 )
