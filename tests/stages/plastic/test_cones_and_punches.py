@@ -158,7 +158,7 @@ def wandering(rng: np.random.Generator, steps: int) -> Floats:
     return np.concatenate([[6.0 * STD], np.cumsum(rng.normal(-0.1, 1.5, steps)) * STD])
 
 
-CASES = [("cone", 0.0), ("flat_punch", 0.0), ("flat_punch", 0.05)]
+CASES = [("cone", 0.0), large("flat_punch", 0.0), ("flat_punch", 0.05)]
 
 
 @pytest.mark.parametrize(("shape", "work"), CASES)
