@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Iterator
-from functools import cached_property
+from functools import cached_property, partial
 
 import numpy as np
 
@@ -107,6 +107,16 @@ class DrawnAsperities:
         load = float(force[yielded].sum()) / pushing if pushing > 0.0 else 0.0
         return {"plastic_contact_fraction": contacts, "plastic_load_fraction": load}
 
+    def _lost(self, separation: Floats) -> Floats:
+        """Return the separation [m] at which each contact is lost after the flat has been as low as on a path."""
+        return partings(self._kernels, self._height, self._rows, float(separation.min()), self._body)
+
+    def _left(self, row: int, lost: Floats, first: int, path: LoadingPath) -> Floats:
+        """Return a total along a path of the contacts that are lost [m] above its step ``first``, as it rises on."""
+        left = lost >= path.separation[first]
+        found = add_up(self._kernels, self._height[left], self._rows[left], path.separation, self._body, {row})
+        return np.asarray(found.total[row])
+
     def _pull_off(self, separation: Floats, force: Floats) -> PullOff:
         """Return the pull-off along separations [m], given the force [N]; NaN where contacts remain at the end."""
         rises = unloadings(separation, force)
@@ -114,13 +124,14 @@ class DrawnAsperities:
             return PullOff()
         found = None
         for rise in rises if self._kernels.adhesive else []:
-            lost = np.sort(partings(self._kernels, self._height, self._rows, float(rise.turns.min()), self._body))
-            largest = locate([rise], lambda path: self._along(path.separation, {FORCE}).total[FORCE], lost)
+            lost = self._lost(rise.turns)
+            largest = locate([rise], partial(self._left, FORCE, lost, rise.turns.size), np.sort(lost))
             found = largest if found is None or (largest and largest.force < found.force) else found
         if found is None:
             return WITHOUT_TENSION
-        there = self._along(found.path.separation, {COUNT, AREA}).total[:, -1]
-        return PullOff(found.force, float(found.path.separation[-1]), float(there[COUNT]), float(there[AREA]))
+        lost = self._lost(found.path.separation)
+        count, area = (float(self._left(row, lost, -1, found.path)[-1]) for row in (COUNT, AREA))
+        return PullOff(found.force, float(found.path.separation[-1]), count, area)
 
 
 def prepare(model: str, body: Body, shape: str) -> None:

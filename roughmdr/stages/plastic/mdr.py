@@ -12,6 +12,7 @@ radius; so force and radius have no jump, and adhesion that vanishes leaves the 
 """
 
 import math
+from functools import partial
 
 import numpy as np
 
@@ -79,14 +80,14 @@ def _reduced_radius(stretch: float, steep: float) -> float:
         low, high = (low, t) if excess > 0.0 else (t, high)
         slope = steep * (1.0 + 0.75 * stretch / (t * root)) + _DECAY * (2.0 * t - 0.5 * stretch / root) * fall
         new = t - excess / slope
-        new = new if low < new < high else 0.5 * (low + high)
+        new = new if low <= new <= high else 0.5 * (low + high)
         if abs(new - t) <= _RTOL * t:
             break
         t = new
     return t
 
 
-@njit
+@partial(njit, small=True)
 def _elastic(indentation: float, asperity: Floats, body: Body) -> State:
     """The contact of a paraboloid that has not yielded: Hertz, or JKR."""
     if body.work > 0.0:
@@ -169,23 +170,24 @@ def ends(deepest: float, mark: Mark, asperity: Floats, body: Body) -> tuple[floa
 
 
 @njit
-def _angle(x: float, stretch: float) -> float:
-    """phi of an adhesive dent, 1 - cos(phi) - stretch sqrt(sin(phi)) = x below 1 - stretch.
+def _tension(x: float, stretch: float) -> float:
+    """l(a)/H = y of an adhesive dent whose springs at the edge are about to let go, x below 1 - stretch.
 
-    Newton's method from above, as the left side is convex.
+    With 1 - cos(phi) = x + y that is y^2 = stretch^2 sin(phi). Newton's method from above, as the left side less the
+    right is convex; where rounding leads it beyond the loss of contact, the last value before.
     """
-    phi = 2.0 * math.asin(math.sqrt(0.5 * max(x + stretch, 0.0)))
-    least = math.asin(_sine_at_loss(stretch))
+    square, y, before = stretch * stretch, stretch, stretch
     for _ in range(_ITERATIONS):
-        sine, cosine = math.sin(phi), math.cos(phi)
-        root = math.sqrt(sine)
-        residual = sine * sine / (1.0 + cosine) - stretch * root - x
-        slope = sine - 0.5 * stretch * cosine / root
-        step = residual / slope if slope > 0.0 else 0.0
-        if not step > _RTOL * phi:
+        versine = x + y
+        sine = math.sqrt(versine * (2.0 - versine))
+        slope = 2.0 * y * sine - square * (1.0 - versine)
+        if not slope > 0.0:
+            return before
+        step = sine * (y * y - square * sine) / slope
+        if not step > _RTOL * y:
             break
-        phi = max(phi - step, least)
-    return max(phi, least)
+        before, y = y, y - step
+    return y
 
 
 @njit
@@ -197,14 +199,14 @@ def state(indentation: float, rise: float, mark: Mark, asperity: Floats, body: B
     x = 1.0 - rise / (height * whole)  # indentation of the springs over H
     stretch = _stretch(mark, body) if body.work > 0.0 else 0.0
     phi, sine, cosine, tension, slope = 0.5 * math.pi, 1.0, 0.0, 1.0 - x, 1.0  # all springs hold
-    if x + stretch < 1.0 and body.work > 0.0:
-        phi = _angle(x, stretch)
-        sine, cosine = math.sin(phi), math.cos(phi)
-        tension, slope = stretch * math.sqrt(sine), sine - 0.5 * stretch * cosine / math.sqrt(sine)
-    elif x + stretch < 1.0:
-        if x <= 0.0:
+    if x + stretch < 1.0:
+        tension = _tension(x, stretch) if body.work > 0.0 else 0.0
+        versine = x + tension
+        if versine <= 0.0:
             return State(0.0, 0.0, 0.0, 0.0)
-        phi, sine, cosine, tension = 2.0 * math.asin(math.sqrt(0.5 * x)), math.sqrt(x * (2.0 - x)), 1.0 - x, 0.0
+        phi, cosine = 2.0 * math.asin(math.sqrt(0.5 * versine)), 1.0 - versine
+        sine = math.sqrt(versine * (2.0 - versine))
+        slope = sine - 0.5 * tension * cosine / sine
     modulus = body.effective_modulus * b
     pushing = phi - sine * cosine
     force = modulus * height * (pushing - 2.0 * sine * tension)

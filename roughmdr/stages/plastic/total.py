@@ -50,7 +50,7 @@ class Sum(NamedTuple):
 def _add(wanted: NDArray[np.bool_], total: Floats, compensation: Floats, step: int, terms: Floats, count: int) -> None:
     """Add the first ``count`` terms of each row that is wanted."""
     for row in range(TOTAL_ROWS):
-        if wanted[row]:
+        if wanted[row] and count > 0:
             term = sum_by_halves(terms[row], count, BLOCK)
             total[row, step], compensation[row, step] = accumulate(total[row, step], compensation[row, step], term)
 
@@ -67,28 +67,30 @@ def _loop(
 ) -> None:
     """Add all asperities, of descending height [m], to the totals that are wanted; ``rows`` are numbers of each."""
     turn = np.argmin(separation)
-    terms, remembered = np.zeros((TOTAL_ROWS, BLOCK)), np.zeros((7, BLOCK))
-    joined, jumped, made, loss, first, second, third = remembered
+    terms, remembered = np.zeros((TOTAL_ROWS, BLOCK)), np.zeros((8, BLOCK))
+    joined, jumped, flowed, made, loss, first, second, third = remembered
     for start in range(0, height.size, BLOCK):
-        z, lowest, above = height[start : min(start + BLOCK, height.size)], math.inf, math.inf
+        z, lowest, above, turned = height[start : min(start + BLOCK, height.size)], math.inf, math.inf, True
         remembered[:] = 0.0
         for step in range(separation.size):
             h, deeper = separation[step], separation[step] < lowest
-            falls, above = h < above, h
-            before, lowest = lowest, min(lowest, h)
+            before, lowest, falls, above = lowest, min(lowest, h), h < above, h
             count = count_above(z, lowest)
             for i in range(count):
                 asperity, deepest = rows[start + i], z[i] - lowest
+                mark, rise = Mark(first[i], second[i], third[i]), max(h - lowest, 0.0 if deeper else JUST_RISEN)
                 if deeper:
                     if kernel.adhesive and joined[i] == 0.0:  # it joins on the way down, where it was made last
-                        last, deepest_before = Mark(first[i], second[i], third[i]), max(z[i] - before, 0.0)
-                        jumped[i] -= kernel.state(deepest_before - made[i], made[i], last, asperity, body).stored
-                        joined[i] = 1.0
+                        last = max(z[i] - before, 0.0) - made[i]
+                        jumped[i] -= kernel.state(last, made[i], mark, asperity, body).stored
                     mark = kernel.mark(deepest, asperity, body)
                     first[i], second[i], third[i] = mark.first, mark.second, mark.third
-                    made[i], loss[i] = kernel.ends(deepest, mark, asperity, body)
-                mark, rise = Mark(first[i], second[i], third[i]), max(h - lowest, 0.0 if deeper else JUST_RISEN)
-                if kernel.adhesive and not deeper:
+                    if wanted[DISSIPATED]:
+                        flowed[i] = kernel.lost(deepest, mark, asperity, body)
+                    joined[i] = 1.0
+                elif kernel.adhesive:
+                    if not turned:
+                        made[i], loss[i] = kernel.ends(deepest, mark, asperity, body)
                     if joined[i] == 0.0 and falls and rise <= made[i]:
                         jumped[i] -= kernel.state(deepest - made[i], made[i], mark, asperity, body).stored
                         joined[i] = 1.0
@@ -106,10 +108,9 @@ def _loop(
                 terms[STIFFNESS, i], terms[ENERGY, i] = contact.stiffness, contact.stored
                 terms[COUNT, i] = 1.0 if contact.radius > 0.0 else 0.0
                 terms[ERROR, i] = slope * (_KERNEL_ERROR * deepest + _ROUNDING * (abs(z[i]) + abs(h)))
-                if wanted[DISSIPATED]:
-                    terms[DISSIPATED, i] = jumped[i] + kernel.lost(deepest, mark, asperity, body)
-            if count > 0:
-                _add(wanted, total, compensation, step, terms, count)
+                terms[DISSIPATED, i] = jumped[i] + flowed[i]
+            turned = not deeper
+            _add(wanted, total, compensation, step, terms, count)
 
 
 def _parting_loop(height: Floats, rows: Floats, lowest: float, body: Body, separation: Floats) -> None:
