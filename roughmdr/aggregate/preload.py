@@ -28,8 +28,8 @@ class Specimen(NamedTuple):
     """A usual indentation [m]."""
     area: float | None
     """The nominal area [m2]."""
-    coupled: bool
-    """Whether they are coupled: then a clear separation is sought from ``clear`` on."""
+    sticky: bool
+    """Whether they may detach above ``clear``: then a clear separation is sought from there on."""
 
 
 def to_preload(path: MachinePath, specimen: Specimen) -> MachinePath:
@@ -40,7 +40,7 @@ def to_preload(path: MachinePath, specimen: Specimen) -> MachinePath:
     assert path.preload is not None
     turn, lowest = _turning_point(path, specimen)
     clear = specimen.clear
-    if path.adhesive and (specimen.coupled or path.machine != FIXED_GRIPS):
+    if path.adhesive and (specimen.sticky or path.machine != FIXED_GRIPS):
         clear, tension = _unloaded(specimen, lowest)
         clear += _MARGIN * path.machine.compliance * tension
     return path.between(clear, turn)

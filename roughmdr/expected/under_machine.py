@@ -73,5 +73,5 @@ def compute_under_machine(
         return found._replace(variables={**found.variables, **own}).only(names)
 
     if path.preload is not None:
-        path = to_preload(path, Specimen(under, clear, depth, source.nominal_area, coupled=False))
+        path = to_preload(path, Specimen(under, clear, depth, source.nominal_area, sticky=False))
     return under(path, names)

@@ -75,7 +75,7 @@ class Plasticity(Stage):
 
     def check(self, scene: Given) -> None:
         """Raise a mismatch with shapes, sections and paths that its models do not know, and variables they lack."""
-        shape, machine = scene.asperities.shape_name, scene.path.control != "separation"
+        shape, path = scene.asperities.shape_name, scene.path
         asked = {"model": self.model, "body": self.body}
         of_spheres = next((f"plasticity.{key} = {value!r}" for key, value in asked.items() if value in _SPHERES), "")
         shapes = _ROUND if of_spheres else (*_ROUND, *_OTHERS)
@@ -94,10 +94,10 @@ class Plasticity(Stage):
                 raise mismatch("adhesion", f"does not go with plasticity.model = {self.model!r}: 'mdr' alone adheres")
             if scene.adhesion_model.candidates != ("jkr",):
                 raise mismatch("adhesion.model", "must be 'jkr' with [plasticity]")
-            if machine:
-                raise mismatch(
-                    f"path.{scene.path.key}", "does not go with [plasticity] and adhesion, which need path.separation"
-                )
+            if path.control != "separation" and (path.to_preload is None or path.machine_stiffness is not None):
+                key = path.key if path.to_preload is None else "machine_stiffness"
+                reason = "does not go with [plasticity] and adhesion, which need path.separation or a preload alone"
+                raise mismatch(f"path.{key}", reason)
         energies = ("energy", "dissipated_energy")
         missing = ["machine_dissipated_energy", *(energies if self.model != "mdr" else ())]
         if unknown := [name for name in scene.output.variables if name in missing]:

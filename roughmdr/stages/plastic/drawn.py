@@ -36,7 +36,7 @@ class DrawnAsperities:
         self._problem, self._model, self._body = problem, model, body
         self._kernels, self._height = kernels_of(model, body, problem.ensemble.shape), problem.ensemble.height
         self.depth, self.nominal_area = problem.depth if self._height.size else 0.0, problem.ensemble.nominal_area
-        self.first_touch = float(self._height.max()) if self._height.size else 0.0
+        self.first_touch = problem.clear if self._height.size else 0.0
 
     @cached_property
     def _rows(self) -> Floats:
@@ -49,9 +49,19 @@ class DrawnAsperities:
         """Return totals [row, step] along separations [m]; OutOfRange where one is not representable."""
         return self._along(separation, rows).total
 
+    def bearing(self, above: float, below: float) -> tuple[float, float]:
+        """Return the force [N] at a separation on first loading, and a bound of it from another separation on.
+
+        Each contact pulls when it is made, and its force rises as the flat comes down. So the bound is the force at
+        ``below`` [m] without the tension of those that have not touched at ``above`` [m].
+        """
+        found = self._along(np.array([below]), {FORCE})
+        force, pull = float(found.total[FORCE, 0]), np.minimum(found.closest[1], 0.0)
+        return force, force - float(pull.sum(where=self._height < above))
+
     def parting(self, lowest: float) -> float:
         """Return the separation [m] at which the last contact is lost after the flat has been at ``lowest`` [m]."""
-        return float(partings(self._kernels, self._height, self._rows, lowest, self._body).max(initial=lowest))
+        return float(self._lost(np.array([lowest])).max(initial=lowest))
 
     def law(self, path: LoadingPath, names: list[str]) -> LoadSeparation:
         """Return the law along a path of the flat; OutOfRange as ``totals``, TooMuchContact as ``check_depth``."""

@@ -13,8 +13,10 @@ from roughmdr.loading.machine import FIXED_GRIPS, MachinePath
 from roughmdr.loading.path import LoadingPath
 from roughmdr.loading.steady_passage import ForceAndStiffness, separations_of
 from roughmdr.numerics.arguments import Floats
+from roughmdr.stages.plastic.drawn import DrawnAsperities
 
 _ERROR = 1e-12  # error of a load under a machine, over it, and of a separation over a usual indentation
+_FIRST, _DEEPEST = 2.0**-6, 2.0**60  # first and last step to deeper contact, over a usual indentation
 _ROUNDINGS = 2.0**-50  # relative rounding of a separation at which contacts part
 
 
@@ -23,7 +25,7 @@ class Asperities(Protocol):
 
     @property
     def first_touch(self) -> float:
-        """Separation [m] of the first touch."""
+        """Separation [m] of the first touch; a little above it where contacts adhere."""
 
     @property
     def depth(self) -> float:
@@ -50,7 +52,7 @@ class Asperities(Protocol):
 def plastic_law(asperities: Asperities, path: LoadingPath | MachinePath, names: list[str]) -> LoadSeparation:
     """Return the law with these variables, under a machine with the separation too; OutOfRange as ``totals``.
 
-    Contacts must not adhere where a machine moves the flat.
+    Contacts may adhere under a machine only on the way to a preload without a spring, and back.
     """
     if isinstance(path, LoadingPath):
         return asperities.law(path, names)
@@ -60,7 +62,7 @@ def plastic_law(asperities: Asperities, path: LoadingPath | MachinePath, names: 
             order = asperities.order
             separation = path.demand if path.machine == FIXED_GRIPS else _separations(asperities, path)
             way = np.where(np.isinf(separation), asperities.first_touch, separation)
-            along = LoadingPath.along(way, unload=False, adhesive=False)
+            along = LoadingPath.along(way, unload=False, adhesive=path.adhesive)
             law = asperities.law(along, [name for name in names if name not in OF_MACHINE])
             if asperities.order == order:
                 return with_place(law, separation, path).only(names)
@@ -69,7 +71,7 @@ def plastic_law(asperities: Asperities, path: LoadingPath | MachinePath, names: 
         if asperities.depth == 0.0:
             raise OutOfRange("path: without asperities no preload is reached")
         area = asperities.nominal_area
-        path = to_preload(path, Specimen(under, asperities.first_touch, asperities.depth, area, coupled=False))
+        path = to_preload(path, Specimen(under, asperities.first_touch, asperities.depth, area, sticky=path.adhesive))
     return under(path, names)
 
 
@@ -77,8 +79,11 @@ def _separations(asperities: Asperities, path: MachinePath) -> Floats:
     """Return the separation at each step of a machine; inf where a dead load has pulled the flat off.
 
     The force falls with the separation also where contacts yield, so that each demand is met once, given how low the
-    flat has been.
+    flat has been. Contacts that adhere bear the one load that is asked for where they do first.
     """
+    if path.adhesive:
+        assert isinstance(asperities, DrawnAsperities)
+        return np.array([_first_bearing(asperities, -float(path.demand[0]))])
     separation, lowest, top = np.empty(path.demand.size), np.inf, asperities.first_touch
     for step in range(separation.size):
         asked, law = path.demand[step : step + 1], _response(asperities, lowest)
@@ -90,6 +95,26 @@ def _separations(asperities: Asperities, path: MachinePath) -> Floats:
             parting = max(asperities.parting(lowest), lowest)
             top = parting + _ROUNDINGS * max(abs(parting), abs(lowest))  # no contact is left there for sure
     return separation
+
+
+def _first_bearing(asperities: DrawnAsperities, load: float) -> float:
+    """Return the highest separation [m] at which contacts that adhere bear a load [N] on first loading.
+
+    Above ``above`` they do not; the last of ``below`` is tried next, and halfway to it where they may before.
+    """
+    above, step, below = asperities.first_touch, _FIRST * asperities.depth, list[float]()
+    while step <= _DEEPEST * asperities.depth:
+        if not below:
+            below, step = [above - step], 2.0 * step
+        force, most = asperities.bearing(above, below[-1])
+        middle = 0.5 * (above + below[-1])
+        if most >= load and below[-1] < middle < above:
+            below.append(middle)
+        elif force >= load:
+            return below[-1]
+        else:
+            above = below.pop()
+    raise OutOfRange("path: the load is out of reach of these contacts")
 
 
 def _response(asperities: Asperities, lowest: float) -> ForceAndStiffness:
