@@ -1,12 +1,14 @@
 """Body: the constants of bodies that yield, and the numbers of each asperity that follow from them."""
 
 import math
+from functools import partial
 from types import ModuleType
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from roughmdr.errors import TooMuchContact
+from roughmdr.kernels.closed import jkr_paraboloid as jkr
 from roughmdr.numerics.arguments import Floats
 from roughmdr.numerics.jit import njit
 
@@ -92,15 +94,35 @@ _DEEPEST = 0.9  # indentation over the radius beyond which the force of "mdr" on
 _WIDEST = 0.41  # contact radius over that of the asperity up to which Jackson and Green fitted their formulas
 
 
-@njit
+@partial(njit, small=True)
 def hertz(indentation: float, asperity: Floats, body: Body) -> State:
     """A contact that has not yielded, under an indentation [m]: F = 4/3 E* sqrt(R) d^(3/2), a = sqrt(R d)."""
-    if indentation <= 0.0:
-        return State(0.0, 0.0, 0.0, 0.0)
-    radius = math.sqrt(asperity[RADIUS] * indentation)
+    depth = max(indentation, 0.0)
+    radius = math.sqrt(asperity[RADIUS] * depth)
     stiffness = 2.0 * body.effective_modulus * radius
-    force = stiffness * indentation / 1.5
-    return State(force, radius, stiffness, 0.4 * force * indentation)
+    force = stiffness * depth / 1.5
+    return State(force, radius, stiffness, 0.4 * force * depth)
+
+
+@partial(njit, small=True)
+def elastic(indentation: float, asperity: Floats, body: Body) -> State:
+    """The contact of a paraboloid that has not yielded: Hertz, or JKR."""
+    if body.work > 0.0:
+        v = jkr.state(max(1.0 + indentation / asperity[DEPTH], 0.0), 2.0)
+        return State(
+            asperity[PULL] * jkr.force(v, 2.0),
+            asperity[TIP] * jkr.radius(v, 2.0),
+            asperity[STIFFNESS_AT_TIP] * jkr.stiffness(v, 2.0),
+            asperity[PULL] * asperity[DEPTH] * jkr.energy(v, 2.0),
+        )
+    return hertz(indentation, asperity, body)
+
+
+@njit
+def fill_elastic(height: Floats, separation: float, rows: Floats, body: Body, found: Floats) -> None:
+    """Fill in contacts as if none had yielded, [number of ``State``, asperity]: a loop that becomes vector code."""
+    for i in range(height.size):
+        found[0, i], found[1, i], found[2, i], found[3, i] = elastic(height[i] - separation, rows[i], body)
 
 
 def check_depth(kernels: PlasticKernels, deepest: Floats, rows: Floats) -> None:

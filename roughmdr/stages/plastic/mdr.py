@@ -12,7 +12,6 @@ radius; so force and radius have no jump, and adhesion that vanishes leaves the 
 """
 
 import math
-from functools import partial
 
 import numpy as np
 
@@ -34,7 +33,7 @@ from roughmdr.stages.plastic.body import (
     Mark,
     PlasticKernels,
     State,
-    hertz,
+    elastic,
 )
 
 _RISE, _DECAY = 1.75, 4.4  # mean pressure of yielding, Y (1 + _RISE e^(-_DECAY d/R)): Zunker and Kamrin, from elements
@@ -87,20 +86,6 @@ def _reduced_radius(stretch: float, steep: float) -> float:
     return t
 
 
-@partial(njit, small=True)
-def _elastic(indentation: float, asperity: Floats, body: Body) -> State:
-    """The contact of a paraboloid that has not yielded: Hertz, or JKR."""
-    if body.work > 0.0:
-        v = jkr.state(max(1.0 + indentation / asperity[DEPTH], 0.0), 2.0)
-        return State(
-            asperity[PULL] * jkr.force(v, 2.0),
-            asperity[TIP] * jkr.radius(v, 2.0),
-            asperity[STIFFNESS_AT_TIP] * jkr.stiffness(v, 2.0) if v > 0.0 else -math.inf,
-            asperity[PULL] * asperity[DEPTH] * jkr.energy(v, 2.0),
-        )
-    return hertz(indentation, asperity, body)
-
-
 @njit
 def prepare(asperity: Floats, body: Body) -> None:
     """Fill the row of an asperity behind its radius: where it yields, and the scales of its JKR contact."""
@@ -111,7 +96,7 @@ def prepare(asperity: Floats, body: Body) -> None:
     stretch = math.sqrt(2.0 * math.pi * body.work / (modulus * radius))
     t = _reduced_radius(stretch, 4.0 * modulus / (3.0 * math.pi * body.yield_strength))
     asperity[LIMIT], asperity[SQUARE] = radius * (t * t - stretch * math.sqrt(t)), (radius * t) * (radius * t)
-    asperity[BEFORE] = _elastic(asperity[LIMIT], asperity, body).stored
+    asperity[BEFORE] = elastic(asperity[LIMIT], asperity, body).stored
 
 
 @njit
@@ -194,7 +179,7 @@ def _tension(x: float, stretch: float) -> float:
 def state(indentation: float, rise: float, mark: Mark, asperity: Floats, body: Body) -> State:
     """The contact after the flat has risen from the deepest indentation."""
     if mark.first == 0.0:
-        return _elastic(indentation, asperity, body)
+        return elastic(indentation, asperity, body)
     b, height, whole = mark.first, mark.second, mark.third
     x = 1.0 - rise / (height * whole)  # indentation of the springs over H
     stretch = _stretch(mark, body) if body.work > 0.0 else 0.0

@@ -28,7 +28,7 @@ from roughmdr.errors import OutOfRange
 from roughmdr.numerics.arguments import Floats
 from roughmdr.numerics.jit import njit, once, specialise
 from roughmdr.numerics.summation import BLOCK, accumulate, sum_by_halves
-from roughmdr.stages.plastic.body import JUST_RISEN, ROWS, Body, Mark, PlasticKernels, State
+from roughmdr.stages.plastic.body import JUST_RISEN, ROWS, Body, Mark, PlasticKernels, State, fill_elastic
 from roughmdr.stages.plastic.body import RADIUS as OWN_RADIUS
 
 _KERNEL_ERROR = 1e-13  # error of a force over 2 E* a times the deepest indentation, as tested
@@ -67,7 +67,7 @@ def _loop(
 ) -> None:
     """Add all asperities, of descending height [m], to the totals that are wanted; ``rows`` are numbers of each."""
     turn = np.argmin(separation)
-    terms, remembered = np.zeros((TOTAL_ROWS, BLOCK)), np.zeros((8, BLOCK))
+    terms, remembered, elastic = np.zeros((TOTAL_ROWS, BLOCK)), np.zeros((8, BLOCK)), np.empty((4, BLOCK))
     joined, jumped, flowed, made, loss, first, second, third = remembered
     for start in range(0, height.size, BLOCK):
         z, lowest, above, turned = height[start : min(start + BLOCK, height.size)], math.inf, math.inf, True
@@ -76,6 +76,8 @@ def _loop(
             h, deeper = separation[step], separation[step] < lowest
             before, lowest, falls, above = lowest, min(lowest, h), h < above, h
             count = count_above(z, lowest)
+            some = count if kernel.adhesive else 0  # those of Hertz cost less one by one
+            fill_elastic(z[:some], h, rows[start : start + some], body, elastic)
             for i in range(count):
                 asperity, deepest = rows[start + i], z[i] - lowest
                 mark, rise = Mark(first[i], second[i], third[i]), max(h - lowest, 0.0 if deeper else JUST_RISEN)
@@ -99,7 +101,9 @@ def _loop(
                         joined[i] = 0.0
                 contact = State(0.0, 0.0, 0.0, 0.0)
                 if (joined[i] > 0.0) if kernel.adhesive else z[i] > h:
-                    contact = kernel.state(z[i] - h, rise, mark, asperity, body)
+                    yielded = not kernel.adhesive or mark.first > 0.0
+                    other = State(elastic[0, i], elastic[1, i], elastic[2, i], elastic[3, i])
+                    contact = kernel.state(z[i] - h, rise, mark, asperity, body) if yielded else other
                 if step == turn:
                     closest[0, start + i], closest[1, start + i] = contact.radius, contact.force
                 slope = 2.0 * body.effective_modulus * contact.radius
