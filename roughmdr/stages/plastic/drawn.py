@@ -52,8 +52,8 @@ class DrawnAsperities:
     def bearing(self, above: float, below: float) -> tuple[float, float]:
         """Return the force [N] at a separation on first loading, and a bound of it from another separation on.
 
-        Each contact pulls when it is made, and its force rises as the flat comes down. So the bound is the force at
-        ``below`` [m] without the tension of those that have not touched at ``above`` [m].
+        Each contact pulls when it is made, and its force rises as the flat comes down, up to a radius of 0.84 R. So the
+        bound is the force at ``below`` [m] without the tension of those that have not touched at ``above`` [m].
         """
         found = self._along(np.array([below]), {FORCE})
         force, pull = float(found.total[FORCE, 0]), np.minimum(found.closest[1], 0.0)

@@ -136,7 +136,7 @@ def test_hard_asperities_are_elastic(sticky: float, units: Any) -> None:
 
 
 def test_weak_adhesion_leaves_the_dry_preload() -> None:
-    """What w adds goes with its square root, as the stretch of the springs does."""
+    """The separation changes with the square root of w, as the stretch of the springs does."""
     dry = Rough(300.0, 0.0).law(0.01).variables["separation"][11]
     off = [abs(Rough(300.0, sticky).law(0.01).variables["separation"][11] - dry) for sticky in (1e-10, 1e-12, 1e-14)]
     assert off[0] < 1e-4
