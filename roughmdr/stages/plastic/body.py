@@ -109,10 +109,11 @@ def elastic(indentation: float, asperity: Floats, body: Body) -> State:
     """The contact of a paraboloid that has not yielded: Hertz, or JKR."""
     if body.work > 0.0:
         v = jkr.state(max(1.0 + indentation / asperity[DEPTH], 0.0), 2.0)
+        slope = jkr.stiffness(v if v > 0.0 else 1.0, 2.0)
         return State(
             asperity[PULL] * jkr.force(v, 2.0),
             asperity[TIP] * jkr.radius(v, 2.0),
-            asperity[STIFFNESS_AT_TIP] * jkr.stiffness(v, 2.0),
+            asperity[STIFFNESS_AT_TIP] * (slope if v > 0.0 else -math.inf),
             asperity[PULL] * asperity[DEPTH] * jkr.energy(v, 2.0),
         )
     return hertz(indentation, asperity, body)

@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from forms import large
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -96,7 +97,7 @@ def close(found: Floats, exact: Floats | float, scale: float) -> None:
     np.testing.assert_allclose(found, exact, rtol=0.0, atol=scale)
 
 
-@settings(deadline=None, max_examples=20)
+@settings(deadline=None, max_examples=12)
 @given(
     st.floats(0.0, 4.0).map(lambda power: 10.0**power),
     st.floats(-8.0, -3.0).map(lambda power: 10.0**power),
@@ -117,11 +118,11 @@ def test_the_turning_point_is_where_the_load_is_borne_first(
     assert found["force"][-1] == found["contact_count"][-1] == 0.0  # pulled off
 
 
-@pytest.mark.parametrize("units", [(1.0, 1.0), (1e-6, 70e9)])
-@pytest.mark.parametrize("sticky", [1e-7, 1e-5, 1e-3])
+@pytest.mark.parametrize("units", [(1e-6, 70e9), large((1.0, 1.0))])
+@pytest.mark.parametrize("sticky", [1e-5, large(1e-7), large(1e-3)])
 def test_hard_asperities_are_elastic(sticky: float, units: Any) -> None:
     """Strong adhesion too, where the load is borne after many touches that pull."""
-    rough = Rough(HARD, sticky, count=300, units=units)
+    rough = Rough(HARD, sticky, count=100, units=units)
     for load in (1e-6, 1e-3, 0.1):
         found, elastic = rough.law(load), rough.elastic(load)
         depth = np.ptp(elastic.variables["separation"])
