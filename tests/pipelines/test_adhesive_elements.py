@@ -1,27 +1,22 @@
 """Adhesive boundary elements against JKR, Hertz and their own energy, and the study of adhesive pairs against them."""
 
 import math
-from collections.abc import Iterator
 
 import numpy as np
 import pytest
-from carried_out import CarriedOut, carried_out
+from carried_out import CarriedOut
 from forms import large
 from oracles.adhesive_elements import AdhesiveMap
 from oracles.boundary_elements import HeightMap
-from studies.versus_adhesive_bem import QUICK, STUDY, by_elements, judge
+from studies.versus_adhesive_bem import QUICK, by_elements, judge
 from studies.versus_adhesive_bem.cases import DETACHED, MODELS, WORK, Case, law
 from studies.versus_bem.ensembles import height_map
 
 import roughmdr as rm
 
+STUDIED = "versus_adhesive_bem"
+
 LONE = Case(1, 8.0, 3.0, 192, step=0.08)
-
-
-@pytest.fixture(scope="module")
-def studied(tmp_path_factory: pytest.TempPathFactory) -> Iterator[CarriedOut]:
-    with carried_out(STUDY, tmp_path_factory.mktemp("versus_adhesive_bem")) as made:
-        yield made
 
 
 def lone_map(work: float, reach: float) -> AdhesiveMap:

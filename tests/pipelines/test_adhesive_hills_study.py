@@ -1,20 +1,15 @@
 """The study of adhesive hills: what it finds in its quick form, and that hills hold on when pulled."""
 
-from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
 import pytest
-from carried_out import CarriedOut, carried_out
-from studies.adhesive_hills import METHODS, STUDY, judge
+from carried_out import CarriedOut
+from studies.adhesive_hills import METHODS, judge
 from studies.adhesive_hills.cases import QUICK, SETS, Adhesive, compare
 from studies.comparison import FACTOR
 
-
-@pytest.fixture(scope="module")
-def studied(tmp_path_factory: pytest.TempPathFactory) -> Iterator[CarriedOut]:
-    with carried_out(STUDY, tmp_path_factory.mktemp("adhesive_hills")) as made:
-        yield made
+STUDIED = "adhesive_hills"
 
 
 @pytest.mark.large

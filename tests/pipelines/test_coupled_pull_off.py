@@ -1,10 +1,9 @@
 """The study of the pull-off with and without coupling in its quick form."""
 
-from pathlib import Path
-
 import numpy as np
 import pytest
 import xarray as xr
+from carried_out import CarriedOut
 from studies.coupled_pull_off import (
     JUMP_ON_RADIUS,
     MODELS,
@@ -12,7 +11,6 @@ from studies.coupled_pull_off import (
     PULL_OFF_FORCE,
     PULL_OFF_LENGTH,
     RADIUS,
-    STUDY,
     WORK,
     Surface,
     along,
@@ -23,18 +21,7 @@ from studies.coupled_pull_off import (
 
 import roughmdr as rm
 
-
-@pytest.fixture(scope="module")
-def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    folder = tmp_path_factory.mktemp("coupled_pull_off")
-    (folder / "report.md").write_text(STUDY.carry_out(folder, quick=True))
-    return folder
-
-
-@pytest.fixture(scope="module")
-def result(folder: Path) -> xr.Dataset:
-    with xr.open_dataset(folder / "coupled_pull_off.nc") as stored:
-        return stored.load()
+STUDIED = "coupled_pull_off"
 
 
 def test_the_scales_are_those_of_a_contact_alone() -> None:
@@ -110,9 +97,9 @@ def test_nothing_is_gained_on_the_way(model: str) -> None:
 
 
 @pytest.mark.large
-def test_the_files_hold_all_surfaces(folder: Path, result: xr.Dataset) -> None:
-    assert (folder / "coupled_pull_off.png").stat().st_size > 10_000
-    rows = [line for line in (folder / "report.md").read_text().splitlines() if line.startswith("| ")]
+def test_the_files_hold_all_surfaces(studied: CarriedOut, result: xr.Dataset) -> None:
+    assert (studied.folder / "coupled_pull_off.png").stat().st_size > 10_000
+    rows = [line for line in studied.text.splitlines() if line.startswith("| ")]
     assert len(rows) == 2 + result.sizes["surface"]
     assert not beyond_pairs(result).any()
     assert np.isfinite(change(result, "pull_off_force")).all()

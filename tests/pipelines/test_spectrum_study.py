@@ -1,18 +1,13 @@
 """The study of spectra: hills of maps are nearest to boundary elements, and it reports and draws all sources."""
 
-from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
 import pytest
-from carried_out import CarriedOut, carried_out
-from studies.spectrum import METHODS, STUDY, laws, means
+from carried_out import CarriedOut
+from studies.spectrum import METHODS, laws, means
 
-
-@pytest.fixture(scope="module")
-def studied(tmp_path_factory: pytest.TempPathFactory) -> Iterator[CarriedOut]:
-    with carried_out(STUDY, tmp_path_factory.mktemp("spectrum")) as made:
-        yield made
+STUDIED = "spectrum"
 
 
 def test_hills_of_one_map_are_nearest() -> None:

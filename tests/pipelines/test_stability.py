@@ -1,13 +1,13 @@
 """The study of the extremes in its quick form; and that it would find a wrong answer, or a refusal without need."""
 
 import math
-from pathlib import Path
 
 import numpy as np
 import pytest
 import xarray as xr
+from carried_out import CarriedOut
 from forms import large
-from studies.stability import FULL, STUDY, draw
+from studies.stability import FULL, draw
 from studies.stability.cases import AXES, Case, design
 from studies.stability.judge import (
     CONTROLS,
@@ -23,6 +23,8 @@ from studies.stability.judge import (
 
 import roughmdr as rm
 
+STUDIED = "stability"
+
 KNOWN = {
     *(f"the natural {what} is not representable" for what in ("indentation", "force", "contact_radius", "stiffness")),
     "the contact of an asperity is not representable",
@@ -32,22 +34,6 @@ KNOWN = {
 TYPICALLY, AT_MOST = 20, 100
 """Equilibria that are tried to find a contact under Dugdale's law; to halve an interval takes 50."""
 MILD = Case(3e6, 2e-5, 0.04, 2.6, 1.5, 0.02, 1.0, 0.05, (0.5, 3.0))
-
-
-@pytest.fixture(scope="module")
-def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    return tmp_path_factory.mktemp("study")
-
-
-@pytest.fixture(scope="module")
-def told(folder: Path) -> str:
-    return STUDY.carry_out(folder, quick=True)
-
-
-@pytest.fixture(scope="module")
-def result(folder: Path, told: str) -> xr.Dataset:
-    with xr.open_dataset(folder / "stability.nc") as stored:
-        return stored.load()
 
 
 @pytest.mark.large
@@ -82,10 +68,10 @@ def test_changes_that_must_not_change_the_answer_do_not(result: xr.Dataset) -> N
 
 
 @pytest.mark.large
-def test_the_study_is_told_and_drawn(result: xr.Dataset, told: str) -> None:
-    assert "No answer is wrong." in told
+def test_the_study_is_told_and_drawn(studied: CarriedOut, result: xr.Dataset) -> None:
+    assert "No answer is wrong." in studied.text
     for law in result.law.to_numpy():
-        assert f"| {law} |" in told
+        assert f"| {law} |" in studied.text
     assert len(draw(result).axes) >= len(AXES) ** 2
 
 

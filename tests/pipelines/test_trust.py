@@ -1,13 +1,11 @@
 """The study of the stated error against the true one."""
 
-from collections.abc import Iterator
-
 import numpy as np
 import pytest
 import xarray as xr
-from carried_out import CarriedOut, carried_out
+from carried_out import CarriedOut
 from oracles.gaussian_maps import gaussian_map
-from studies.trust import STUDY, errors
+from studies.trust import errors
 from studies.trust.samples import QUICK as SAMPLES
 from studies.trust.scenes import CASES, QUICK
 from studies.trust.truth import by_boundary_elements, by_pairs, by_range_of_adhesion, refined
@@ -15,13 +13,9 @@ from studies.trust.truth import by_boundary_elements, by_pairs, by_range_of_adhe
 import roughmdr as rm
 from roughmdr.spectrum import SelfAffine
 
+STUDIED = "trust"
+
 MODULUS = 1e9
-
-
-@pytest.fixture(scope="module")
-def studied(tmp_path_factory: pytest.TempPathFactory) -> Iterator[CarriedOut]:
-    with carried_out(STUDY, tmp_path_factory.mktemp("trust")) as made:
-        yield made
 
 
 @pytest.mark.large

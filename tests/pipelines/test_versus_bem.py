@@ -1,21 +1,16 @@
 """The study of independent asperities against boundary elements."""
 
 import math
-from collections.abc import Iterator
 
 import numpy as np
 import pytest
-from carried_out import CarriedOut, carried_out
-from studies.versus_bem import STUDY, errors, estimates, grid_errors, groups, touch
+from carried_out import CarriedOut
+from studies.versus_bem import errors, estimates, grid_errors, groups, touch
 from studies.versus_bem.ensembles import QUICK, SIZE, Case, contact_radii, distances, height_map, separations
 
 import roughmdr as rm
 
-
-@pytest.fixture(scope="module")
-def studied(tmp_path_factory: pytest.TempPathFactory) -> Iterator[CarriedOut]:
-    with carried_out(STUDY, tmp_path_factory.mktemp("versus_bem")) as made:
-        yield made
+STUDIED = "versus_bem"
 
 
 @pytest.mark.large
@@ -34,6 +29,7 @@ def test_independent_forces_are_too_low_by_more_than_the_grid_is_off(studied: Ca
     assert (grid[np.isfinite(grid)] < 0.1 * error[np.isfinite(grid)]).all()
 
 
+@pytest.mark.large
 def test_the_estimate_bounds_most_errors_and_is_within_a_factor_of_3(studied: CarriedOut) -> None:
     error = errors(studied.result)
     known = np.isfinite(error)
