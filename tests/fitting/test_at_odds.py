@@ -35,7 +35,7 @@ def by_separate_fits(measured: pd.DataFrame, mean: float, error: float) -> float
 
 @pytest.mark.filterwarnings("ignore::roughmdr.LimitWarning")
 @pytest.mark.parametrize("columns", [STATED, PLAIN], ids=["stated", "unstated"])
-@pytest.mark.parametrize("error", [1.0, 1e3, 1e4])
+@pytest.mark.parametrize("error", [1.0, 1e4])
 def test_a_prior_that_the_curve_contradicts_is_told(columns: list[str], error: float) -> None:
     measured = curve(STIFF)[columns]
     _, said = doubts_of(measured, [MODULUS], priors={MODULUS: (1.9e6, error)})
@@ -56,6 +56,7 @@ def test_curves_that_do_not_share_a_value_are_told(columns: list[str]) -> None:
         assert "residuals are systematic" in text
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize("columns", [STATED, PLAIN], ids=["stated", "unstated"])
 @pytest.mark.parametrize("noise", ["constant", "proportional"])
 def test_no_more_than_chance_is_told(columns: list[str], noise: str) -> None:

@@ -25,7 +25,7 @@ def told(tip: Tip, measured: pd.DataFrame, free: list[str]) -> str:
         return str(rm.fit(measured, tip.scene(), free).attrs["warnings"])
 
 
-@settings(max_examples=15, deadline=None)
+@settings(max_examples=8, deadline=None)
 @given(
     kind=st.sampled_from(["hertz", "cone", "jkr"]),
     noise=st.sampled_from([0.0, 1e-4, 0.003, 0.05]),

@@ -45,7 +45,7 @@ def chosen(fit: Any) -> str:
 @pytest.mark.parametrize("model", ["dugdale", large("jkr"), large("none")])
 def test_the_right_model_is_chosen(model: str) -> None:
     """And Akaike's criterion is that of the textbook."""
-    points = 30
+    points = 20
     fit = rm.fit(measured(model, 0.003, points=points), TIP.scene(), [MODULUS, WORK], model="auto")
     assert chosen(fit) == model
     k = fit.sizes["parameter"] + 1
@@ -79,7 +79,7 @@ def test_models_are_told_or_it_is_said_that_they_are_not(model: str) -> None:
 
 def test_the_command_tells_and_stores_the_comparison(tmp_path: Path) -> None:
     """Without adhesion no parameter is left, and the law is that of Hertz."""
-    frame = measured("jkr", 0.01)
+    frame = measured("jkr", 0.01, points=20)
     frame.to_csv(tmp_path / "curve.csv", index=False)
     (tmp_path / "scene.toml").write_text(tomli_w.dumps(TIP.scene()))
     arguments = ("fit", "curve.csv", "scene.toml", "-o", "fit.nc", "--free", WORK, "--model", "auto")
@@ -100,7 +100,6 @@ def test_the_command_tells_and_stores_the_comparison(tmp_path: Path) -> None:
         expected = 2 * n * math.log(rms[0] / rms[1]) - more
         chosen_one = list(fit.model_name.values).index(chosen(fit))
         assert float(fit.aicc[0] - fit.aicc[chosen_one]) == pytest.approx(expected, rel=1e-6)
-    assert roughmdr(*arguments, cwd=tmp_path).returncode == 0
 
 
 @pytest.mark.parametrize(
@@ -124,7 +123,8 @@ def test_what_is_wrong_for_one_model_is_so_for_all(free: list[str], options: dic
 
 
 @pytest.mark.parametrize(
-    ("bounds", "doubt"), [({}, 'does not tell adhesion model "jkr"'), ({WORK: (TIP.work, 1.0)}, "is fitted better")]
+    ("bounds", "doubt"),
+    [({}, 'does not tell adhesion model "jkr"'), large({WORK: (TIP.work, 1.0)}, "is fitted better")],
 )
 def test_a_curve_without_adhesion_leaves_nothing_free(bounds: dict[str, Any], doubt: str) -> None:
     with pytest.warns(rm.LimitWarning, match=doubt):

@@ -7,7 +7,7 @@ from measurements import CASES, inside, noise_of
 
 import roughmdr as rm
 
-FAST = 20
+FAST = 10
 
 
 @pytest.mark.parametrize("stated", [False, large(True)], ids=["unstated", "stated"])

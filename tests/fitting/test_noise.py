@@ -9,7 +9,7 @@ from scipy.stats import t
 
 from roughmdr.fitting.uncertainty import by_residuals
 
-DRAWS = 1500
+DRAWS = 750
 X = np.linspace(0.05, 1.0, 40)
 SLOPES = {
     "line": np.stack([np.ones_like(X), X], axis=1),

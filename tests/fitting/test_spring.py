@@ -46,7 +46,7 @@ def model_on_machine(scene: dict[str, Any], remote: NDArray[np.float64]) -> Mode
 def test_slopes_are_those_of_the_law_on_its_machine(length: float, modulus: float, unlike: bool) -> None:
     """Loading, half unloading, loading again and unloading: each load remembers three turns."""
     ends = np.array([0.12, -0.05, 0.02, -0.1, 0.1]) * length
-    remote = np.concatenate([np.linspace(a, b, 7)[:-1] for a, b in pairwise(ends)])
+    remote = np.concatenate([np.linspace(a, b, 4)[:-1] for a, b in pairwise(ends)])
     model = model_on_machine(rough(length, modulus, unlike), remote)
     x = np.array([0.05, -0.1, 0.08, 0.02, 0.03])
     found = slopes_of(model, x)
