@@ -90,6 +90,7 @@ def test_what_cannot_be_asked_for(name: str, tmp_path: Path, monkeypatch: pytest
         read(table)
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("keep", ["curves", "statistics"])
 def test_the_expected_law_is_taken_where_there_is_one(keep: str) -> None:
     found = go(asking(1e-4, None, output=kept(keep)))
@@ -104,6 +105,7 @@ def test_the_expected_law_is_taken_where_there_is_one(keep: str) -> None:
     assert "warnings" not in found.attrs or "was not reached" not in found.attrs["warnings"]
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("keep", ["curves", "statistics"])
 def test_where_the_expected_law_is_not_right_enough_asperities_are_drawn(keep: str) -> None:
     asked = {"asperities": {**FEW, "correlation": {"radius": 1.0}}, "output": kept(keep)}
@@ -262,6 +264,7 @@ def test_cells_that_are_easy_stop_early(tmp_path: Path) -> None:
     assert found.attrs["accuracy"] == f"{text} in 2 of 2 cells; {easy} to {hard} realisations in 2 of them"
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("most", [2, 20, 50])
 def test_where_the_most_realisations_are_too_few_a_warning_says_so(most: int) -> None:
     table = asking(0.001, most=most, sweep={"asperities.count": [30, 60]})
@@ -300,6 +303,7 @@ def test_statistics_and_curves_come_to_the_same(method: str) -> None:
             np.testing.assert_array_equal(statistics[f"{name}_max"][cell], own.max(0))
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("keep", ["curves", "statistics"])
 def test_the_force_need_not_be_asked_for(keep: str) -> None:
     with_force = go(asking(0.05, output=kept(keep, "contact_area", "force")))
@@ -314,6 +318,7 @@ def split(table: dict[str, Any], runs_per_task: int, workers: int) -> xr.Dataset
     return go(table, runs_per_task=runs_per_task, workers=workers)
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("keep", ["curves", "statistics"])
 def test_the_outcome_depends_on_no_workers_and_no_tasks(keep: str) -> None:
     table = asking(0.05, sweep={"asperities.count": [30, 300]}, output=kept(keep))
@@ -369,6 +374,7 @@ def test_a_smaller_error_goes_on_from_the_curves_of_a_larger_one(
     assert not done
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("keep", ["curves", "statistics"])
 def test_a_larger_error_drops_no_realisations_unasked(keep: str, tmp_path: Path) -> None:
     out = tmp_path / "out.nc"
@@ -407,6 +413,7 @@ def test_a_cell_with_a_failure_is_left_as_it_is(
         assert CliRunner().invoke(main, arguments).exit_code == 0
 
 
+@pytest.mark.few(1)
 @pytest.mark.filterwarnings("error")
 @pytest.mark.parametrize("keep", ["curves", "statistics"])
 def test_results_with_missing_realisations_can_be_looked_at(keep: str, tmp_path: Path) -> None:

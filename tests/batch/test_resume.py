@@ -199,6 +199,7 @@ def refused(table: dict[str, Any], out: Path, message: str) -> None:
 VARIABLES = ["force", "contact_area", "energy"]
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize("keep", ["curves", "statistics"])
 @pytest.mark.parametrize(
     ("asked", "gone"), [(["energy", "force"], "contact_area"), (["pressure"], ", ".join(VARIABLES))]
@@ -360,6 +361,7 @@ def test_a_netcdf_file_of_another_kind_is_left_alone(out: Path) -> None:
     assert xr.load_dataset(out).force.to_numpy().tolist() == [1.0, 2.0]
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("keep", ["curves", "statistics"])
 def test_numbers_that_were_changed_are_refused(keep: str, calls: Calls, out: Path) -> None:
     table = swept(WORKS[:2], output=kept(keep))
@@ -396,6 +398,7 @@ def test_statistics_with_more_realisations_are_computed_anew(calls: Calls, out: 
     assert_same(found, go(more, None))
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("keep", ["curves", "statistics"])
 def test_cells_that_are_the_same_are_computed_once(keep: str, calls: Calls, out: Path) -> None:
     table = small(
@@ -442,6 +445,7 @@ def test_other_versions_are_not_used(
     assert not store_folder(out).exists()
 
 
+@pytest.mark.few(3)
 @pytest.mark.parametrize("keep", ["curves", "statistics"])
 @pytest.mark.parametrize("after", [1, 4, 8])
 def test_what_an_interrupted_run_finished_is_used(
@@ -457,6 +461,7 @@ def test_what_an_interrupted_run_finished_is_used(
     assert_same(found, go(table, None))
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("keep", ["curves", "statistics"])
 def test_an_interrupted_run_asked_for_otherwise(
     keep: str, calls: Calls, out: Path, monkeypatch: pytest.MonkeyPatch
@@ -473,6 +478,7 @@ def test_an_interrupted_run_asked_for_otherwise(
     assert_same(found, go(longer, None))
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("realizations", [11, 19])
 def test_curves_of_an_interrupted_run_become_statistics(
     realizations: int, calls: Calls, out: Path, monkeypatch: pytest.MonkeyPatch
@@ -519,6 +525,7 @@ def test_an_interrupted_run_of_another_scene_is_refused(out: Path, monkeypatch: 
     assert not store_folder(out).exists()
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("keep", ["curves", "statistics"])
 def test_what_failed_is_computed_again(keep: str, calls: Calls, out: Path) -> None:
     table = swept(WORKS[:2], output=kept(keep))
@@ -539,6 +546,7 @@ def test_what_failed_is_computed_again(keep: str, calls: Calls, out: Path) -> No
     assert_same(whole, go(table, None))
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("keep", ["curves", "statistics"])
 def test_failures_leave_the_same_whatever_the_tasks(keep: str, calls: Calls) -> None:
     calls.fails = lambda work, number: work == 0.01 and number in (2, 5)
@@ -561,6 +569,7 @@ def test_where_all_failed_the_first_error_is_raised_and_nothing_written(calls: C
     assert not store_folder(out).exists()
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("keep", ["curves", "statistics"])
 def test_warnings_are_those_of_a_fresh_run(keep: str, calls: Calls, out: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     steep = {**FEW, "radius": "2 um"}

@@ -42,40 +42,7 @@ def assert_cell(cell: xr.Dataset, alone: xr.Dataset) -> None:
     assert cell.branch.to_numpy().tolist() == alone.branch.to_numpy().tolist()
 
 
-@pytest.mark.large
-def test_a_product_of_three_by_five_by_thirty_two(tmp_path: Path) -> None:
-    table = swept(
-        {
-            "adhesion.work": ["10 mJ/m^2", "20 mJ/m^2", "50 mJ/m^2"],
-            "asperities.height.std": {"logspace": ["0.1 um", "10 um"], "num": 5},
-        },
-        batch={"realizations": 32},
-    )
-    (tmp_path / "scene.toml").write_text(tomli_w.dumps(table))
-    rm.run(tmp_path / "scene.toml", tmp_path / "out.nc")
-    with xr.open_dataset(tmp_path / "out.nc") as ds:
-        ds.load()
-    assert ds.force.dims == ("adhesion_work", "asperities_height_std", "realization", "step")
-    assert ds.force.shape == (3, 5, 32, 24)
-    assert ds.sel(adhesion_work=0.05).force.mean("realization").dims == ("asperities_height_std", "step")
-    assert ds.adhesion_work.to_numpy().tolist() == [0.01, 0.02, 0.05]
-    assert ds.asperities_height_std.sel(asperities_height_std=1e-6) == 1e-6
-    units = {name: ds[name].attrs.get("units") for name in ds.coords}
-    texts = {"branch": None, "cell_key": None}
-    assert units == {"adhesion_work": "J m-2", "asperities_height_std": "m", "separation": "m", **texts}
-    assert ds.separation.dims == ("asperities_height_std", "step")
-    assert (ds.status == 0).all()
-    assert ds.run_time.dims == ds.numerical_error.dims == ("adhesion_work", "asperities_height_std", "realization")
-    for work in ds.adhesion_work.to_numpy():
-        for std in ds.asperities_height_std.to_numpy():
-            alone = single(table, {"adhesion.work": float(work), "asperities.height.std": float(std)})
-            assert_cell(ds.sel(adhesion_work=work, asperities_height_std=std), alone)
-    again = rm.run(tmp_path / "out.nc", tmp_path / "again.nc")
-    for name in EVERY:
-        np.testing.assert_array_equal(again[name], ds[name])
-    assert again.attrs["scene"] == ds.attrs["scene"]
-
-
+@pytest.mark.few(5)
 @pytest.mark.parametrize(
     ("key", "values", "unit"),
     [
@@ -124,6 +91,7 @@ def test_cells_share_their_draws() -> None:
     np.testing.assert_array_equal(result.contact_count[0], result.contact_count[1])
 
 
+@pytest.mark.few(3)
 @pytest.mark.parametrize("runs_per_task", [1, 4, 5, 12])
 @pytest.mark.parametrize("workers", [1, 3])
 def test_bits_do_not_depend_on_how_cells_are_split_into_tasks(runs_per_task: int, workers: int) -> None:
@@ -144,6 +112,7 @@ def test_a_product_stands_in_order_and_a_falling_one_falls() -> None:
     assert result.asperities_height_distribution.to_numpy().tolist() == ["uniform", "normal"]
     asked = {"adhesion.work": 0.02, "asperities.patch": 1e-3, "asperities.height.distribution": "uniform"}
     labels = {key.replace(".", "_"): value for key, value in asked.items()}
+    assert result.force.dims == (*result.run_time.dims, "step") == (*labels, "realization", "step")
     assert_cell(result.sel(labels), single(table, asked))
 
 

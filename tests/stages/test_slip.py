@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+from forms import large
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from oracles.multiprecision import mp
@@ -133,7 +134,7 @@ def test_nothing_is_lost_where_contacts_stick_or_slide_at_once() -> None:
     np.testing.assert_allclose(lost, sticking * most * np.maximum(u - most, 0.0), atol=1e-13 * sticking * most * most)
 
 
-@pytest.mark.parametrize("shape", ["paraboloid", "cone"])
+@pytest.mark.parametrize("shape", ["paraboloid", large("cone")])
 def test_with_much_friction_contacts_stick(shape: str) -> None:
     """T -> 2 G* a u, the sooner the more friction: the rest falls as its inverse."""
     parameter = {"paraboloid": {"radius": np.full(3, 5e-5)}, "cone": {"slope": np.full(3, 0.1)}}[shape]
