@@ -45,7 +45,7 @@ def chosen(fit: Any) -> str:
 @pytest.mark.parametrize("model", ["dugdale", large("jkr"), large("none")])
 def test_the_right_model_is_chosen(model: str) -> None:
     """And Akaike's criterion is that of the textbook."""
-    points = 20
+    points = 30
     fit = rm.fit(measured(model, 0.003, points=points), TIP.scene(), [MODULUS, WORK], model="auto")
     assert chosen(fit) == model
     k = fit.sizes["parameter"] + 1
