@@ -76,7 +76,7 @@ def _loop(
             h, deeper = separation[step], separation[step] < lowest
             before, lowest, falls, above = lowest, min(lowest, h), h < above, h
             count = count_above(z, lowest)
-            some = count if kernel.adhesive else 0  # those of Hertz cost less one by one
+            some = count if kernel.adhesive and kernel.round else 0  # others cost less one by one
             fill_elastic(z[:some], h, rows[start : start + some], body, elastic)
             for i in range(count):
                 asperity, deepest = rows[start + i], z[i] - lowest
@@ -101,9 +101,9 @@ def _loop(
                         joined[i] = 0.0
                 contact = State(0.0, 0.0, 0.0, 0.0)
                 if (joined[i] > 0.0) if kernel.adhesive else z[i] > h:
-                    yielded = not kernel.adhesive or mark.first > 0.0
+                    alone = not (kernel.adhesive and kernel.round) or mark.first > 0.0
                     other = State(elastic[0, i], elastic[1, i], elastic[2, i], elastic[3, i])
-                    contact = kernel.state(z[i] - h, rise, mark, asperity, body) if yielded else other
+                    contact = kernel.state(z[i] - h, rise, mark, asperity, body) if alone else other
                 if step == turn:
                     closest[0, start + i], closest[1, start + i] = contact.radius, contact.force
                 slope = 2.0 * body.effective_modulus * contact.radius
