@@ -31,13 +31,13 @@ _LOADS = {"pressed": (0.25, np.inf), "no load": (-0.25, 0.25), "tension": (-np.i
 _POINTS = {False: 384, True: 96}
 _MODELS: dict[str, Any] = {"independent": None, "mean field": "mean_field", "order 1": PAIRS[1], "order 2": PAIRS[2]}
 _CONTROLS = ("separation", "pressure", "contact_fraction")
-_QUANTITIES = ("pressure", "contact_fraction", "stiffness", "conductance_radius", "contact_radius_sum", "separation")
-_ASKED = [(quantity, control) for control in _CONTROLS for quantity in _QUANTITIES if quantity != control]
+QUANTITIES = ("pressure", "contact_fraction", "stiffness", "conductance_radius", "contact_radius_sum", "separation")
+ASKED = [(quantity, control) for control in _CONTROLS for quantity in QUANTITIES if quantity != control]
 _LEAST_POINTS = 3.0  # least points of the grid a mean contact radius
 _STEPS = 30  # steps of the law from one solution of boundary elements to the next
 _SHAPES = ("paraboloid", "paraboloid", "lognormal", "cone", "quartic")
 _PLACEMENTS = ("random", "random", "hard_core 0.5", "hard_core 0.7", "hexagonal", "square")
-_WORDS = {
+WORDS = {
     "error": ("error of a quantity, of the separation over that of force over stiffness", "1"),
     "stated": ("error that is stated of it", "1"),
     "unknown": ("error of boundary elements", "1"),
@@ -110,14 +110,14 @@ def law_to_the_end(ensemble: xr.Dataset, separation: Floats, interaction: Any) -
     while separation.size > 2 * _STEPS:
         try:
             return law_of(ensemble, separation=separation, effective_modulus=1.0, interaction=interaction,
-                          variables=[name for name in _QUANTITIES if name != "separation"])  # fmt: skip
+                          variables=[name for name in QUANTITIES if name != "separation"])  # fmt: skip
         except rm.RoughmdrError:
             separation = separation[: int(0.93 * separation.size)]
     return None
 
 
 def compare(task: tuple[int, int, int]) -> list[dict[str, Any]]:
-    """Return the errors of all models of a surface, by seed, number and points: of each the row of ``_WORDS``."""
+    """Return the errors of all models of a surface, by seed, number and points: of each the row of ``WORDS``."""
     with without_limits():
         surface = surface_of(*draw_case(*task))
     separation, rows = separations_of(surface), []
@@ -131,7 +131,7 @@ def compare(task: tuple[int, int, int]) -> list[dict[str, Any]]:
             if law := law_to_the_end(ensemble, path_of(separation), asked):
                 cut = "" if surface.periodic else "cut "
                 labels = {"group": f"{cut}{group}", "model": model, "surface": task[1]}
-                rows.append(labels | _row(law, truth, unknown, surface.side))
+                rows.append(labels | row_of(law, truth, unknown, surface.side))
     return rows
 
 
@@ -157,12 +157,12 @@ def compare_adhering(case: Adhering) -> list[dict[str, Any]]:
     for model, own in STATED.items():
         if case.asperities == 1 and "interaction" not in own:
             continue  # its images, which it does not feel, are no part of the comparison
-        law = flat_law(case, ensemble, h, [name for name in _QUANTITIES if name != "separation"], **own)
-        pulled, off = law.roughmdr.pull_off(), np.full((3, len(_ASKED), 1), np.nan)
+        law = flat_law(case, ensemble, h, [name for name in QUANTITIES if name != "separation"], **own)
+        pulled, off = law.roughmdr.pull_off(), np.full((3, len(ASKED), 1), np.nan)
         parts = pulled["force"] * FLATTER + tension, pulled["force_model_error"] * FLATTER, 0.0
-        off[:, _ASKED.index(("pressure", "separation")), 0] = np.array(parts) / tension
+        off[:, ASKED.index(("pressure", "separation")), 0] = np.array(parts) / tension
         labels = {"group": "adhesive asperities", "surface": -case.seed}
-        rows.append(labels | {"model": f"{model}, pull-off"} | dict(zip(_WORDS, off, strict=True)))
+        rows.append(labels | {"model": f"{model}, pull-off"} | dict(zip(WORDS, off, strict=True)))
         for branch, sign, side in (("loading", 1.0, steps <= turn), ("unloading", -1.0, steps >= turn)):
             force = np.where(side, sign * fine["force"], 0.0 if sign > 0.0 else -np.inf)
             first = steady & side & (force > np.maximum.accumulate(np.append(force.min(), force))[:-1])
@@ -170,12 +170,12 @@ def compare_adhering(case: Adhering) -> list[dict[str, Any]]:
                 there = first & (fine["force"] >= least * tension) & (fine["force"] < most * tension)
                 true, floor = ({name: each[there] for name, each in numbers.items()} for numbers in (truth, unknown))
                 if there.any():
-                    found = _row(law, true, floor, case.size, branch)
+                    found = row_of(law, true, floor, case.size, branch)
                     rows.append(labels | {"model": f"{model}, {branch}, {load}"} | found)
     return rows
 
 
-def _row(
+def row_of(
     law: xr.Dataset, truth: dict[str, Floats], unknown: dict[str, Floats], side: float, branch: str = "loading"
 ) -> dict[str, Floats]:
     """Return errors, stated ones and those of boundary elements, [what is asked, step]; NaN where there is no truth.
@@ -188,7 +188,7 @@ def _row(
     for control in _CONTROLS:
         values = truth[control]
         found = getattr(law.roughmdr, f"at_{control}")(values, branch=branch)
-        for quantity in (each for each, given in _ASKED if given == control):
+        for quantity in (each for each, given in ASKED if given == control):
             error.append((found[quantity].to_numpy() - truth[quantity]) / scales[quantity])
             stated.append(found[f"{quantity}_model_error"].to_numpy() / scales[quantity])
             floor.append(unknown[quantity] + unknown[control])
@@ -200,9 +200,14 @@ def measure(quick: bool) -> xr.Dataset:
     tasks = [(SEED, number, _POINTS[quick]) for number in range(SURFACES[quick])]
     adhering = in_two_processes(compare_adhering, PRESSED[:1] if quick else PRESSED)
     rows = [row for part in (*in_two_processes(compare, tasks), *adhering) for row in part]
+    return dataset_of(rows)
+
+
+def dataset_of(rows: list[dict[str, Any]]) -> xr.Dataset:
+    """Return the errors of all cases."""
     labels = {name: ("case", [row[name] for row in rows]) for name in ("group", "model", "surface")}
-    asked = [f"{quantity} at given {control}" for quantity, control in _ASKED]
-    return xr.Dataset(in_cases(_WORDS, rows, "case", "asked", "step"), {**labels, "asked": asked})
+    asked = [f"{quantity} at given {control}" for quantity, control in ASKED]
+    return xr.Dataset(in_cases(WORDS, rows, "case", "asked", "step"), {**labels, "asked": asked})
 
 
 def draw(result: xr.Dataset) -> Figure:

@@ -1,12 +1,16 @@
-"""Summits that yield beside boundary elements whose pressure is at most the hardness, by Tamaas.
+"""Contacts that yield beside boundary elements whose pressure is at most the hardness, and the errors stated of them.
 
-Tamaas is no part of the project: ``ROUGHMDR_TAMAAS`` in the environment holds a command that runs a Python that has it.
-Its elements feel each other, and what flows vanishes (H. M. Stanley, T. Kato, J. Tribol. 119 (1997), 481).
+Asperities on a plane and summits of Gaussian maps are drawn at random. Elements feel each other, and what flows
+vanishes (H. M. Stanley, T. Kato, J. Tribol. 119 (1997), 481). They are found by conjugate gradients with two bounds,
+and of one map by Tamaas too, which is no part of the project: ``ROUGHMDR_TAMAAS`` in the environment holds a command
+that runs a Python that has it.
 """
 
+import math
 import os
 import shlex
 import subprocess
+from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
 
@@ -17,103 +21,168 @@ import roughmdr as rm
 from roughmdr.elements.half_space import BoundaryElements
 from roughmdr.ensemble.spectral.section import SpectrumAsperities
 from roughmdr.numerics.arguments import Floats
-from studies.comparison import panels
-from studies.study import Figure, Study, named, table, without_limits
+from roughmdr.storage.labelled import Labelled
+from roughmdr.storage.netcdf_writing import write_netcdf
+from studies.at_pressure import FRACTIONS, QUANTITIES, dataset_of, draw, row_of
+from studies.at_pressure import report as table_of
+from studies.study import Study, in_two_processes, without_limits
+from studies.versus_bem.ensembles import SIZE, Case, height_map
 
 COMMAND = "ROUGHMDR_TAMAAS"
-CASES = [(waves, slope) for waves in ((2, 16), (2, 32), (4, 16), (4, 32), (3, 24)) for slope in (0.5, 1.0, 3.0, 10.0)]
-"""Longest and shortest waves along the side of a map, and E* times its r.m.s. slope over the hardness [1]."""
-SOLVERS = ("saturated elements", "Bowden and Tabor", "mdr", "jackson-green", "elastic summits", "elastic elements")
-_PRESSURES = np.array([0.005, 0.02, 0.05, 0.15])  # pressures over the hardness [1]
-_SIDE, _HARDNESS, _MODULUS = 1e-4, 1e9, 1e11  # side of a map [m]; H and E* [Pa] as metals have them
+SEED = 2061  # seed of the surfaces; those of seed 59 have set the constants
+SURFACES = {False: 24, True: 2}  # number of surfaces in full and in reduced form
+MODELS = ("mdr", "jackson-green", "kogut-etsion")
+_MAP_HARDNESS = 0.01  # hardness of maps over E* [1], as metals have it
+_GAP = 1e-5  # largest gap in contact, or overlap outside it, over the deepest overlap
+_CHANGE = 0.02  # step of the separation for the stiffness, over the deepest overlap
+_SEARCHED, _STEPS = 26, 400  # separations at which contact fractions are looked for; steps of a law
+_LEAST_POINTS = 2.5  # least points of the grid a mean contact radius
+_UNKNOWN = 0.01  # error of other quantities by boundary elements [1]
 _SCRIPT = """import sys, numpy, tamaas
-folder, most, *means = sys.argv[1:]
-height, found = numpy.load(f"{folder}/height.npy"), []
+folder, most, mean = sys.argv[1:]
+height = numpy.load(f"{folder}/height.npy")
 model = tamaas.ModelFactory.createModel(tamaas.model_type.basic_2d, [1.0, 1.0], list(height.shape))
 model.E, model.nu = 1.0, 0.0
-for mean in means:
-    model.traction[:] = 0.0
-    solver = tamaas.KatoSaturated(model, height, 1e-4, float(most))
-    solver.max_iter = solver.dump_freq = 20000
-    solver.solve(float(mean))
-    found.append(model.traction.reshape(height.shape).copy())
-numpy.save(f"{folder}/pressure.npy", found)
+solver = tamaas.KatoSaturated(model, height, 1e-4, float(most))
+solver.max_iter = solver.dump_freq = 20000
+solver.solve(float(mean))
+numpy.save(f"{folder}/pressure.npy", model.traction.reshape(height.shape))
 """
 
 
-def saturated(height: Floats, most: float, command: str) -> list[float]:
-    """Return contact fractions by Tamaas, with all of the edge cells that flow; heights [side], hardness [E*]."""
-    grid, areas = BoundaryElements(height, np.ones(2)), []
-    with TemporaryDirectory() as folder:
-        np.save(f"{folder}/height.npy", height)
-        asked = map(str, (folder, most, *(_PRESSURES * most).tolist()))
-        subprocess.run([*shlex.split(command), "-c", _SCRIPT, *asked], check=True)
-        solved = np.load(f"{folder}/pressure.npy")
-    for grid.pressure in solved:
-        gap, flows, touches = grid.displacement() - height, grid.pressure >= most * (1.0 - 1e-9), grid.pressure > 0.0
-        gap -= gap[touches & ~flows].mean()
-        assert np.where(flows, gap, np.where(touches, abs(gap), -gap)).max() < 0.01 * height.std(), "no solution"
+class SaturatedElements(BoundaryElements):
+    """Boundary elements of unit sides whose pressure is at most ``most`` [E*]."""
+
+    def __init__(self, height: Floats, most: float) -> None:
+        super().__init__(height, np.ones(2))
+        self.most = most
+
+    def press(self, separation: float) -> float:
+        """Return the mean pressure at a separation, on from the pressures of the last one."""
+        overlap = self.height - separation
+        deepest, before, direction = float(overlap.max()), 0.0, np.zeros_like(overlap)
+        for _ in range(5000):
+            gap, full = self.displacement() - overlap, self.pressure >= self.most
+            rest = np.where((self.pressure > 0.0) & ~full, gap, 0.0)
+            if max(np.abs(rest).max(), gap[full].max(initial=0.0), -gap[~full].min()) <= _GAP * deepest:
+                return float(self.pressure.mean())
+            square = float(np.sum(rest * rest))
+            direction = rest + (square / before if before > 0.0 else 0.0) * np.where(rest != 0.0, direction, 0.0)
+            curvature = float(np.sum(direction * self._displaced(direction)))
+            step = float(np.sum(rest * direction)) / curvature if curvature > 0.0 else self._cell_stiffness
+            found = np.clip(self.pressure - step * direction, 0.0, self.most)
+            hit = ((found == 0.0) & (gap < 0.0)) | ((found == self.most) & (gap > 0.0))
+            self.pressure = np.clip(found - step * np.where(hit, gap, 0.0), 0.0, self.most)
+            before = 0.0 if hit.any() else square
+        raise RuntimeError(f"no equilibrium at the separation {separation:g}")
+
+    def area(self) -> float:
+        """Return the contact fraction, with all of the edge cells that flow."""
+        touches, flows = self.pressure > 0.0, self.pressure >= self.most * (1.0 - 1e-9)
         edges = np.array([touches & ~np.roll(touches, step, axis) for step in (1, -1) for axis in (0, 1)])
-        partly = (edges & ~flows).sum() / edges.sum()
-        areas.append(partly * grid.patches().area + (1.0 - partly) * float(touches.mean()))
-    return areas
+        partly = (edges & ~flows).sum() / max(edges.sum(), 1)
+        return float(partly * self.patches().area + (1.0 - partly) * touches.mean())
+
+    def quantities(self, separation: float) -> dict[str, float]:
+        """Return quantities at a separation for E* = 1 and the unit side, and what tells their errors."""
+        top, pressure = float(self.height.max()), self.press(separation)
+        kept, area, patches = self.pressure, self.area(), self.patches()
+        patch = BoundaryElements(np.where(kept > 0.0, 0.0, -np.inf), np.ones(2))
+        changes = [step * _CHANGE * (top - separation) for step in (1.0, 2.0)]
+        slopes = [(self.press(separation - each) - self.press(separation + each)) / (2.0 * each) for each in changes]
+        self.pressure = kept
+        points = math.sqrt(area / (math.pi * max(patches.contacts, 1))) * self.height.shape[0]
+        conductance = 0.5 * patch.press(-1.0)
+        found = (pressure, area, slopes[0], conductance, patches.radius_sum, separation)
+        return dict(zip(QUANTITIES, found, strict=True)) | {"slope": slopes[1] / slopes[0] - 1.0, "points": points}
+
+    def along(self) -> list[dict[str, float]]:
+        """Return quantities about ``FRACTIONS``, where the grid resolves contacts."""
+        top, reached = float(self.height.max()), [0.0]
+        tried = top - (top - float(self.height.mean())) * np.linspace(0.0, 0.98, _SEARCHED) ** 1.3
+        while reached[-1] < 1.3 * FRACTIONS[-1] and len(reached) < tried.size:
+            self.press(tried[len(reached)])
+            reached.append(max(float((self.pressure > 0.0).mean()), reached[-1]))
+        asked = [fraction for fraction in FRACTIONS if fraction < reached[-1]]
+        found = [self.quantities(float(np.interp(each, reached, tried[: len(reached)]))) for each in asked]
+        return [each for each in found if each["points"] >= _LEAST_POINTS]
 
 
-def compare(waves: tuple[int, int], slope: float, command: str) -> Floats:
-    """Return contact fractions of a map: [solver, pressure]."""
-    scene: dict[str, Any] = {
-        "title": "Summits that yield", "seed": 7, "output": {"variables": ["contact_fraction"]}, "asperities": {
-            "source": "spectrum", "model": "summits", "patch": _SIDE, "hurst": 0.8, "long_wave": _SIDE / waves[0],
-            "short_wave": _SIDE / waves[1], "points": 250 / waves[1], "rms_slope": slope * _HARDNESS / _MODULUS,
-        }, "material": {"modulus": 0.91 * _MODULUS, "poisson": 0.3}, "path": {"pressure": list(_PRESSURES * _HARDNESS)},
-    }  # fmt: skip
-    laws = [rm.run(scene | {"plasticity": {"hardness": _HARDNESS, "model": model}}) for model in SOLVERS[2:4]]
-    laws.append(rm.run(scene | {"reference": {"model": "boundary_elements"}}))
-    height = SpectrumAsperities.model_validate(scene["asperities"]).height_map(7, 0).height / _SIDE
-    found = np.empty((len(SOLVERS), _PRESSURES.size))
-    found[:2] = saturated(height, _HARDNESS / _MODULUS, command), _PRESSURES
-    found[2:5] = [law["contact_fraction"][0] for law in laws]
-    found[5] = laws[-1]["reference_contact_fraction"][0]
-    return found
+def by_tamaas(elements: SaturatedElements, pressure: float, command: str) -> float:
+    """Return the contact fraction by Tamaas at a pressure [E*]."""
+    with TemporaryDirectory() as folder:
+        np.save(f"{folder}/height.npy", elements.height)
+        asked = (folder, f"{elements.most}", f"{pressure}")
+        subprocess.run([*shlex.split(command), "-c", _SCRIPT, *asked], check=True, stdout=subprocess.DEVNULL)
+        elements.pressure = np.load(f"{folder}/pressure.npy")
+    return elements.area()
+
+
+def draw_case(seed: int, number: int, folder: Path) -> tuple[dict[str, Any], Floats, float, float]:
+    """Return asperities of a scene, the map [side], the side [m] and the hardness [E*]: of two one is a map."""
+    chance, log = np.random.default_rng([seed, number]), np.log
+    if number % 2:
+        side, long, short = 1e-4, int(chance.choice([2, 3, 4])), int(chance.choice([12, 16, 24]))
+        section: dict[str, Any] = {
+            "source": "spectrum", "model": "summits", "patch": side, "hurst": float(chance.choice([0.3, 0.5, 0.8])),
+            "long_wave": side / long, "short_wave": side / short, "points": 250 / short,
+            "rms_slope": _MAP_HARDNESS * math.exp(chance.uniform(log(0.3), log(15.0))),
+        }  # fmt: skip
+        height = SpectrumAsperities.model_validate(section).height_map(number, 0).height
+        return section, height / side, side, _MAP_HARDNESS
+    placement = str(chance.choice(["random", "random", "hard_core 0.5", "hard_core 0.7", "square"]))
+    shape, count = str(chance.choice(["paraboloid", "lognormal"])), int(chance.choice([36, 64, 100]))
+    roughness, radius = np.exp(chance.uniform(log([0.03, 0.005]), log([1.0, 0.15]))).tolist()
+    case = Case(placement, shape, count, roughness, 256, number)
+    ensemble, file = case.generate(), folder / "asperities.nc"
+    write_netcdf(Labelled.of(ensemble), file)
+    hardness = 4.0 / (3.0 * math.pi) * radius * case.spacing  # first met at this contact radius over the spacing; R 1 m
+    return {"source": "file", "file": str(file)}, height_map(ensemble, 256) / SIZE, SIZE, hardness
+
+
+def compare(task: tuple[int, int]) -> list[dict[str, Any]]:
+    """Return the errors of all models of a surface, by seed and number; of the first map the area by Tamaas too."""
+    seed, number = task
+    rows, command, other = list[dict[str, Any]](), os.environ.get(COMMAND, ""), math.nan
+    with TemporaryDirectory() as folder, without_limits():
+        section, height, side, hardness = draw_case(seed, number, Path(folder))
+        elements = SaturatedElements(height, hardness)
+        along = elements.along()
+        truth = {name: np.array([each[name] for each in along]) for name in along[0]}
+        if number == 1 and command:
+            other = by_tamaas(elements, truth["pressure"][-1], command) / truth["contact_fraction"][-1] - 1.0
+        points, slope = truth.pop("points"), truth.pop("slope")
+        truth |= {name: side * truth[name] for name in QUANTITIES[2:]}
+        unknown = dict.fromkeys(QUANTITIES, np.full(points.size, _UNKNOWN)) | {"stiffness": np.abs(slope)}
+        unknown |= dict.fromkeys(("contact_fraction", "contact_radius_sum"), 0.06 / points)
+        h = truth["separation"]
+        path = np.linspace(2.0 * h[0] - h[-1], h[-1] - 0.15 * (h[0] - h[-1]), _STEPS)
+        scene = {
+            "title": "Contacts that yield", "seed": number, "material": {"modulus": 0.91, "poisson": 0.3},
+            "path": {"separation": path.tolist()}, "output": {"variables": ["force", "contact_area", *QUANTITIES[2:5]]},
+        }  # fmt: skip
+        for model in MODELS:
+            law = rm.run(scene | {"asperities": section, "plasticity": {"hardness": hardness, "model": model}})
+            labels = {"group": "summits" if number % 2 else "asperities", "model": model, "surface": number}
+            rows.append(labels | row_of(law.isel(realization=0), truth, unknown, side) | {"tamaas": other})
+    return rows
 
 
 def measure(quick: bool) -> xr.Dataset:
-    """Press all maps, or one; nothing where Tamaas is not there."""
-    command = os.environ.get(COMMAND, "")
-    cases = CASES[: (1 if quick else None) if command else 0]
-    with without_limits():
-        found = np.reshape([compare(*case, command) for case in cases], (-1, len(SOLVERS), _PRESSURES.size))
-    numbers = {"area": (("case", "solver", "pressure"), found)}
-    slope = ("case", [each for _, each in cases], named("E* times the r.m.s. slope over the hardness"))
-    return xr.Dataset(numbers, {"solver": list(SOLVERS), "slope": slope, "pressure": _PRESSURES})
-
-
-def draw(result: xr.Dataset) -> Figure:
-    """Draw contact fractions over those of saturated elements, solvers beside each other."""
-    figure, (panel,) = panels(8.0, 5.0, 1)
-    true, slope = result["area"].sel(solver=SOLVERS[0]), result["slope"].to_numpy()
-    for i, name in enumerate(SOLVERS[1:]):
-        over = 100.0 * (result["area"].sel(solver=name) / true - 1.0)
-        panel.semilogx(slope * 1.06 ** (i - 2), over, "_os1x"[i], color=f"C{i}", mfc="none", label=[name, *[""] * 3])
-    panel.set(xlabel="E* times r.m.s. slope over hardness", ylabel="contact area over saturated elements, less 1 [%]")
-    panel.legend()
-    return figure
+    """Compare all surfaces, or two."""
+    tasks = [(SEED, number) for number in range(SURFACES[quick])]
+    rows = [row for part in in_two_processes(compare, tasks) for row in part]
+    return dataset_of(rows).assign_attrs(tamaas=float(np.fmax.reduce([row["tamaas"] for row in rows])))
 
 
 def report(result: xr.Dataset) -> str:
-    """Return differences of areas by slope."""
-    if not result.sizes["case"]:
-        return f"Tamaas was left out: the environment variable {COMMAND} holds no command of a Python that has it."
-    area = {name: result["area"].sel(solver=name, drop=True) for name in SOLVERS}
-    off = xr.Dataset({name: each / area[SOLVERS[0]] - 1.0 for name, each in area.items()}).drop_vars(SOLVERS[0])
-    off["elastic summits over elements"] = area[SOLVERS[4]] / area[SOLVERS[5]] - 1.0
-    rows = []
-    for slope, part in [("all", off), *off.groupby("slope")]:
-        cells = (100.0 * np.quantile(each, [0.5, 0.0, 1.0]) for each in part.values())
-        rows.append([f"{slope}", *("{:+.0f} % ({:+.0f} to {:+.0f})".format(*each) for each in cells)])
-    return f"""Contact areas at given pressure over those of saturated elements, less 1, by E* times the slope over H:
-
-{table(["slope", *map(str, off)], rows)}"""
+    """Return how large errors are and how the stated ones do, and the area by Tamaas."""
+    other = result.attrs["tamaas"]
+    told = f"No {COMMAND} is set." if math.isnan(other) else f"Tamaas finds {100.0 * other:+.2g} % of area on one map."
+    return f"{told} {table_of(result)}"
 
 
-STUDY = Study("versus_saturated", "Summits that yield and saturated elements", measure, draw, report, "1 of 20 cases")
+STUDY = Study(
+    "versus_saturated", "Contacts that yield and saturated elements", measure, draw, report,
+    f"{SURFACES[True]} of {SURFACES[False]} surfaces",
+)  # fmt: skip

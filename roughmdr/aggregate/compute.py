@@ -26,6 +26,7 @@ from roughmdr.loading.pull_off import prepare as prepare_pull_off
 from roughmdr.loading.staircase import no_memory
 from roughmdr.model_error import Assumptions, Givens, crowd_warnings
 from roughmdr.model_error.interaction import overlap_share, poisson_overlap
+from roughmdr.model_error.parts import Yielding
 from roughmdr.numerics.arguments import Floats
 from roughmdr.shapes import SHAPES
 
@@ -82,7 +83,7 @@ def law_of_totals(
     radius_at: Callable[[float], Floats],
     *,
     factor: float = 1.0,
-    plasticity_error: Floats | None = None,
+    yielding: Yielding | None = None,
 ) -> LoadSeparation:
     """Return the law of independent contacts from their totals [row, step], with the error of the model.
 
@@ -103,7 +104,7 @@ def law_of_totals(
         ensemble.origin,
         _overlap(ensemble, radius),
         neighbours_error=neighbours_error(ensemble, path, total, radius_at) if problem.interaction is None else None,
-        plasticity_error=plasticity_error,
+        yielding=yielding,
     )
     result = LoadSeparation.of(total, names, path.separation, givens, assumptions, 0, validity.tabor, adhesion.model)
     crowded = crowd_warnings(assumptions.neighbours_error, total[totals.AREA] / area)

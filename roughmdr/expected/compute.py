@@ -37,6 +37,7 @@ from roughmdr.loading.staircase import no_memory
 from roughmdr.model_error import Assumptions, Givens, crowd_warnings
 from roughmdr.model_error.distances import FEW, error_of_few
 from roughmdr.model_error.interaction import poisson_overlap
+from roughmdr.model_error.parts import Yielding
 from roughmdr.numerics.arguments import Floats
 
 _MAX_ERROR = 0.1  # error, over the largest force, above which the law is refused
@@ -115,7 +116,7 @@ def law_of_means(
     validity: JkrValidity,
     interaction: Interaction | None = None,
     *,
-    plasticity_error: Floats | None = None,
+    yielding: Yielding | None = None,
 ) -> LoadSeparation:
     """Return the law along the path from totals of all asperities [row, step], with the error of the model.
 
@@ -135,7 +136,7 @@ def law_of_means(
         origin="summits" if source.of_surface else "asperities",
         overlap=overlap,
         neighbours_error=_neighbours_error(source, total) if interaction is None else None,
-        plasticity_error=plasticity_error,
+        yielding=yielding,
     )
     crowded = crowd_warnings(assumptions.neighbours_error, total[AREA] / nominal_area)
     law = LoadSeparation.of(

@@ -4,7 +4,7 @@ A law whose force is off by a shift of the separation alone has no other error a
 the contacts share the load. Errors at any other given quantity follow from these and from the slopes of the law.
 """
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from functools import partial
 from typing import NamedTuple
 
@@ -43,6 +43,21 @@ class AtForce(NamedTuple):
     share: float
     constant: float = 0.0
     root: float = 0.0
+
+
+class Interaction(NamedTuple):
+    """Errors by interaction of the force at given separation [1]."""
+
+    own: Floats
+    elastic: Floats
+    """The error if contacts of these radii were elastic."""
+    softness: Floats | float
+    """What yielding has left of it, but for flanks of summits."""
+
+    @classmethod
+    def of_elastic(cls, own: Floats) -> "Interaction":
+        """Return the errors of elastic contacts."""
+        return cls(own, own, 1.0)
 
 
 class Method(NamedTuple):
@@ -85,6 +100,9 @@ _ON_GRID = Method(_constant, (AtForce(1.0, 0.02), AtForce(1.0, 0.01), AtForce(1.
 """Boundary elements in place of pairs: what flanks of summits cost, and about the error of the grid."""
 
 
+_SOFTENING, _FLOWING = 0.125, 2.0
+"""Power of the contact fraction with which contacts that yield become softer, typically; power of the softness with
+which the area at given force loses the error of elastic contacts (``pipelines/study.py versus_saturated``)."""
 _LEAST_TABOR, _DMT = 1e-9, 1.0 / 3.0
 """Tabor number below which nothing changes; error of JKR's pull-off force there, where Derjaguin, Muller and Toporov's
 holds, which is 4/3 of it.
@@ -132,24 +150,26 @@ def by_range(of_force: Floats, tabor: Floats, largest: Floats) -> Floats:
 
 
 def relative_at_force(
-    interaction: Floats, fraction: Floats, others: Floats, of_range: Floats, left: Floats, *known: Floats
+    interaction: Interaction, fraction: Floats, others: Sequence[Floats], of_range: Floats, left: Floats, *known: Floats
 ) -> list[Floats]:
     """Return the relative errors [1] of the quantities at given force, at most 1: [...] each.
 
-    ``interaction`` is the error by interaction of the force at given separation, ``fraction`` the contact fraction,
-    ``others`` are all other parts of the error but that by the range of adhesion: ``of_range`` is that of the pull-off
-    force of JKR, ``left`` the distance of the force from the largest tension, over it, at most 1. ``known`` are the
-    code of ``ORIGINS`` and the points of a grid, 0 of pairs, NaN of independent contacts: arrays that go together. NaN
-    where an error is not known.
+    ``fraction`` is the contact fraction, ``others`` are all other parts of each error but that by the range of
+    adhesion: ``of_range`` is that of the pull-off force of JKR, ``left`` the distance of the force from the largest
+    tension, over it, at most 1. ``known`` are the code of ``ORIGINS`` and the points of a grid, 0 of pairs, NaN of
+    independent contacts: arrays that go together. NaN where an error is not known.
     """
-    shape = np.broadcast_shapes(*(each.shape for each in (interaction, fraction, left, *known)))
+    by_own, elastic, softness = interaction
+    shape = np.broadcast_shapes(*(each.shape for each in (by_own, fraction, *others, left, *known)))
     found = [np.full(shape, np.nan) for _ in NAMES]
     for method, own in _methods(*known):
-        for error, (share, constant, root), factor in zip(found, method.errors, _BY_RANGE, strict=True):
-            shared = interaction != 0.0  # not so the load of a lone asperity
-            along = share * interaction + shared * constant + shared * root * np.sqrt(fraction)
-            np.copyto(error, along + others + factor * of_range, where=own)
-    found[STIFFNESS] = found[STIFFNESS] + (1.0 / left - 1.0) * (_BY_RANGE[STIFFNESS] * of_range + _PULLED * interaction)
+        for quantity, (share, constant, root) in enumerate(method.errors):
+            shared = by_own != 0.0  # not so the load of a lone asperity
+            kept = softness**_FLOWING if quantity == AREA else 1.0
+            by_force = elastic if quantity == CONDUCTANCE else by_own  # patches conduct as if they were elastic
+            along = share * by_force + shared * kept * constant + shared * kept * root * np.sqrt(fraction)
+            np.copyto(found[quantity], along + others[quantity] + _BY_RANGE[quantity] * of_range, where=own)
+    found[STIFFNESS] = found[STIFFNESS] + (1.0 / left - 1.0) * (_BY_RANGE[STIFFNESS] * of_range + _PULLED * by_own)
     touching = np.where(fraction > 0.0, 1.0, 0.0 * fraction)
     return [np.minimum(error, 1.0) * touching for error in found]
 
@@ -166,6 +186,31 @@ def interaction_along(
         here, there = np.broadcast_arrays(method.interaction(fraction), method.interaction(largest_fraction))
         share = np.divide(here, there, out=np.zeros(here.shape), where=there > 0.0)
         np.copyto(found, largest * share, where=own)
+    return found
+
+
+def softened(
+    largest: Floats, softness: Floats, fraction: Floats, largest_fraction: Floats, origin: Floats, grid: Floats
+) -> Interaction:
+    """Return errors by interaction of independent contacts that yield, as ``interaction_along``.
+
+    ``softness`` is that at the largest contact fraction, towards which contacts become softer, slowly; NaN where they
+    are elastic.
+    """
+    along = interaction_along(largest, fraction, largest_fraction, origin, grid)
+    here, there = (_elastic(each, origin, grid) for each in (fraction, largest_fraction))
+    flanks = np.where(origin == ORIGINS.index("summits"), summits_error(fraction, "summits"), 0.0)
+    lighter = (largest_fraction / np.where(fraction > 0.0, fraction, np.inf)) ** _SOFTENING
+    soft = np.where(np.isnan(softness), 1.0, np.minimum(softness * lighter, 1.0))
+    own = np.where(largest > there, along, flanks + soft * (here - flanks)) * (largest > 0.0)
+    return Interaction(own, np.maximum(own, here * (largest > 0.0)), soft)
+
+
+def _elastic(fraction: Floats, origin: Floats, grid: Floats) -> Floats:
+    """Return the error by interaction [1] of independent elastic contacts at a contact fraction."""
+    found = np.full(np.broadcast_shapes(fraction.shape, origin.shape, grid.shape), np.nan)
+    for method, own in _methods(origin, grid):
+        np.copyto(found, method.interaction(fraction), where=own)
     return found
 
 

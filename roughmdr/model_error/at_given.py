@@ -10,19 +10,31 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from roughmdr.model_error.at_force import NAMES, QUANTITIES, RELEASING, by_range, interaction_along, relative_at_force
-from roughmdr.model_error.parts import PARTS, PLASTIC
+from roughmdr.model_error.at_force import (
+    NAMES,
+    QUANTITIES,
+    RELEASING,
+    Interaction,
+    by_range,
+    interaction_along,
+    relative_at_force,
+    softened,
+)
+from roughmdr.model_error.parts import PARTS, PLASTIC, PLASTIC_AT_FORCE, SOFTNESS
 from roughmdr.numerics.arguments import Floats
 from roughmdr.variables import ORIGINS, SEPARATION
 
 FORCES = ("force", "pressure")
 """Variables that tell the force; the first one that a result has counts."""
+_METHOD = ("asperity_origin", "grid_points")
 _AREAS = ("contact_fraction", "contact_area")
 _H = SEPARATION.name
 STATED, _BY_JKR = "model_error_curve", "adhesion_range_error"
 ALWAYS = (*PARTS, "largest_contact_fraction", "asperity_origin")
-NUMBERS = (*ALWAYS, "grid_points", "avalanche_count", "tabor_number")
-"""Numbers of a run that its errors follow from; those beside ``ALWAYS`` are known of some contacts alone."""
+NUMBERS = (*ALWAYS, "grid_points", "avalanche_count", "tabor_number", PLASTIC, SOFTNESS, *PLASTIC_AT_FORCE)
+"""Numbers of a run that its errors follow from; those beside ``ALWAYS`` are known of some contacts alone: of contacts
+that yield ``PLASTIC_AT_FORCE`` where the flat is lower than ever before.
+"""
 _MOST = 0.9
 """Largest relative error that a value is corrected for: of a value that is too small by more nothing is left."""
 
@@ -79,35 +91,54 @@ def _relative_errors(
     """Return the error of the force at given separation, its part over the largest force, and errors [1] of quantities
     at given force.
     """
-    origin, grid = numbers["asperity_origin"], numbers["grid_points"]
+    origin, grid = (numbers[name] for name in _METHOD)
     interaction, by_jkr, most = (numbers[name] for name in ("interaction_error", _BY_JKR, "largest_contact_fraction"))
     others = _others(numbers)
     fraction = np.where(np.isnan(fraction), np.where(touching, most, 0.0), fraction)
-    foreseen = interaction_along(interaction, fraction, most, origin, grid)
-    foreseen += np.where(touching, others + by_jkr, 0.0)
+    yields, loads = np.isfinite(numbers[PLASTIC]), np.isfinite(numbers[PLASTIC_AT_FORCE[0]])
+    by_model = np.where(yields & touching, numbers[PLASTIC], 0.0)
+    shared = softened(interaction, np.where(loads, numbers[SOFTNESS], np.nan), fraction, most, origin, grid)
+    foreseen = np.where(yields, shared.own, interaction_along(interaction, fraction, most, origin, grid))
+    foreseen += np.where(touching, others + by_jkr, 0.0) + by_model * loads
     whole = np.where(np.isnan(stated), np.minimum(foreseen, 1.0), stated)
     of_jkr = np.minimum(whole, by_jkr)
     own = np.maximum(whole - of_jkr - np.where(touching, others, 0.0), 0.0) * (interaction != 0.0)
     sticky_hills = (origin == ORIGINS.index("hills")) & np.isfinite(numbers["avalanche_count"])
     over_largest = np.where(sticky_hills, whole, of_jkr)  # which hills attraction with a range makes sooner
     pulled = numbers["by_range"], numbers["left"]
-    return whole - over_largest, over_largest, relative_at_force(own, fraction, others, *pulled, origin, grid)
+    shared = shared if yields.any() else Interaction.of_elastic(own)
+    at_force = relative_at_force(shared, fraction, _at_force(numbers), *pulled, origin, grid)
+    return whole - over_largest, over_largest + by_model * ~loads * np.isnan(stated), at_force
 
 
 def largest_at_force(numbers: Mapping[str, Any]) -> dict[str, float]:
     """Return the largest relative errors of quantities at given force [1], by their names: NaN where not known.
 
     ``numbers`` are those of one run or arrays over runs, by name; nothing is told without all that errors follow from,
-    nor of contacts that yield: the errors are those of elastic ones.
+    nor of contacts that yield and adhere.
     """
-    if PLASTIC in numbers or not numbers.keys() >= {*ALWAYS}:
+    yields = PLASTIC in numbers
+    if not numbers.keys() >= {*ALWAYS} or (yields and not knows_yielding(numbers)):
         return {}
     of = {name: np.asarray(numbers.get(name, np.nan), dtype=np.float64)[..., None] for name in NUMBERS}
-    others = _others(of)
-    known = (of[name] for name in ("asperity_origin", "grid_points"))
+    own, fraction, origin, grid = (of[name] for name in ("interaction_error", "largest_contact_fraction", *_METHOD))
     by_jkr, none = by_range(of[_BY_JKR], of["tabor_number"], np.ones(1)), np.ones(1)
-    found = relative_at_force(of["interaction_error"], of["largest_contact_fraction"], others, by_jkr, none, *known)
+    shared = softened(own, of[SOFTNESS], fraction, fraction, origin, grid) if yields else Interaction.of_elastic(own)
+    found = relative_at_force(shared, fraction, _at_force(of), by_jkr, none, origin, grid)
     return {name: float(np.fmax.reduce(each, axis=None)) for name, each in zip(NAMES, found, strict=True)}
+
+
+def knows_yielding(numbers: Mapping[str, Any]) -> bool:
+    """Return whether a run or any of several tells ``PLASTIC_AT_FORCE``."""
+    return bool(np.isfinite(numbers.get(PLASTIC_AT_FORCE[0], np.nan)).any())
+
+
+def _at_force(numbers: Mapping[str, Floats]) -> list[Floats]:
+    """Return the errors of the quantities ``NAMES`` at given force by all but interaction and the range of adhesion."""
+    area, stiffness, radius = (
+        _others(numbers) + np.where(np.isfinite(numbers[PLASTIC]), numbers[name], 0.0) for name in PLASTIC_AT_FORCE
+    )
+    return [area, stiffness, radius, radius]
 
 
 def _others(numbers: Mapping[str, Floats]) -> Floats:

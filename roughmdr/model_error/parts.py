@@ -7,6 +7,7 @@ import numpy as np
 
 from roughmdr.asperity.validity import ValidityLimits
 from roughmdr.ensemble.ensemble import Origin
+from roughmdr.model_error.coupling import summits_error
 from roughmdr.model_error.interaction import OF_ORIGIN, interaction_error
 from roughmdr.numerics.arguments import Floats
 from roughmdr.variables import ORIGINS
@@ -28,6 +29,10 @@ _SLACK = 1.01  # a path that ends at this contact fraction is trusted all along
 
 PLASTIC = "plasticity_error"
 """The part that contacts have which yield."""
+PLASTIC_AT_FORCE = ("plasticity_area_error", "plasticity_stiffness_error", "plasticity_radius_error")
+"""Their errors of contact area, stiffness and contact radii at given force by the model of yielding."""
+SOFTNESS = "plasticity_softness"
+"""Their ``Yielding.softness`` at closest approach."""
 
 PARTS = {
     "interaction_error": "asperities that do not feel each other, or are coupled only so far",
@@ -41,6 +46,25 @@ PARTS = {
 
 ALL_PARTS = PARTS | {PLASTIC: "the model of yielding, from which others differ"}
 """These parts, and the one that only contacts which yield have."""
+
+
+class Yielding(NamedTuple):
+    """How much models of contacts that yield differ, and how much softer contacts are than elastic ones."""
+
+    force: Floats
+    """Largest difference of the forces at given separation, over the largest force, at each step."""
+    softness: Floats
+    """Slope of the law over that of elastic contacts of these radii, at most 1, at each step.
+
+    What neighbours displace a contact by changes its force by so much less: of a lattice exactly, to first order.
+    """
+    at_force: tuple[float, ...]
+    """Errors ``PLASTIC_AT_FORCE`` on loading, the largest from a tenth of the largest force on; NaN with adhesion."""
+
+    def named(self, separation: Floats) -> dict[str, float]:
+        """Return the numbers of a run by their names in results."""
+        softness = float(self.softness[np.argmin(separation)])
+        return {**dict(zip(PLASTIC_AT_FORCE, self.at_force, strict=True)), SOFTNESS: softness}
 
 
 class Assumptions(NamedTuple):
@@ -63,9 +87,8 @@ class Assumptions(NamedTuple):
     """The error of their conductance; None for independent ones."""
     neighbours_error: Floats | None = None
     """The error of independent ones from their distances, at each step; None to take it from the contact fraction."""
-    plasticity_error: Floats | None = None
-    """The error of the force by the model of contacts that yield, over the largest force, at each step; None for
-    elastic ones."""
+    yielding: Yielding | None = None
+    """What is known of contacts that yield; None for elastic ones."""
 
 
 class ModelError(NamedTuple):
@@ -87,6 +110,8 @@ class ModelError(NamedTuple):
     """Where the asperities come from."""
     largest: float = math.nan
     """The largest error, with those over the largest force as they are; NaN where the nominal area is not known."""
+    plastic: dict[str, float] | None = None
+    """``PLASTIC_AT_FORCE`` and ``SOFTNESS`` where contacts yield."""
 
     @property
     def named(self) -> dict[str, float]:
@@ -94,6 +119,7 @@ class ModelError(NamedTuple):
         return {
             "model_error": self.largest,
             **self.parts,
+            **(self.plastic or {}),
             "overlap_fraction": self.overlap,
             "largest_contact_fraction": self.largest_fraction,
             "trusted_separation": self.trusted_separation,
@@ -120,11 +146,12 @@ class ModelError(NamedTuple):
             "border_error": assumptions.border_error,
         }
         others, plastic, stated = sum(constant.values()), np.zeros(()), np.zeros(())
-        if (by_yielding := assumptions.plasticity_error) is not None:
-            at_step = np.divide(by_yielding * largest, np.abs(force), out=np.zeros_like(force), where=force != 0.0)
+        if (yielding := assumptions.yielding) is not None:
+            by_model = yielding.force
+            at_step = np.divide(by_model * largest, np.abs(force), out=np.zeros_like(force), where=force != 0.0)
             plastic = np.minimum(at_step, 1.0)
             loads = (separation <= np.minimum.accumulate(separation)) & (force.min() >= 0.0)
-            stated = np.where(loads, plastic, np.minimum(by_yielding, 1.0))
+            stated = np.where(loads, plastic, np.minimum(by_model, 1.0))
             constant[PLASTIC] = float(stated.max(initial=0.0))
         if contact_fraction is None:
             curve = np.where(force != 0.0, math.nan, 0.0)
@@ -136,9 +163,12 @@ class ModelError(NamedTuple):
             interaction = interaction_error(contact_fraction, coefficients) if known is None else np.minimum(known, 1.0)
         else:
             interaction = np.where(np.isnan(force), math.nan, coupled)
+        if yielding is not None:
+            flanks = summits_error(contact_fraction, assumptions.origin)
+            interaction = np.minimum(interaction, flanks + (interaction - flanks) * yielding.softness)
         curve = np.minimum(interaction + np.where(force != 0.0, others + plastic, 0.0), 1.0)
         errors = curve
-        if by_yielding is not None:
+        if yielding is not None:
             errors = np.minimum(interaction + np.where(force != 0.0, others + stated, 0.0), 1.0)
         if coupled is None:
             trusted = interaction <= interaction_error(np.array(_SLACK * TRUSTED_FRACTION), coefficients)
@@ -153,4 +183,5 @@ class ModelError(NamedTuple):
             assumptions.overlap,
             assumptions.origin,
             float(np.nanmax(errors, initial=0.0)),
+            None if yielding is None else yielding.named(separation),
         )

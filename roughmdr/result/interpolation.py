@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from roughmdr.errors import OutOfRange
+from roughmdr.model_error.parts import PLASTIC
 from roughmdr.result.between import CONFIDENCE
 from roughmdr.result.brackets import find_brackets, interpolate
 from roughmdr.result.curves import (
@@ -21,7 +22,7 @@ from roughmdr.result.curves import (
     whole,
 )
 from roughmdr.result.grid_errors import grid_errors
-from roughmdr.result.model_errors import errors_there
+from roughmdr.result.model_errors import LOADS, errors_there, lowest_so_far
 from roughmdr.result.view import ResultView
 from roughmdr.schema.arguments import check_values
 from roughmdr.variables import LAW_VARIABLES, MODEL_ERROR, SEPARATION
@@ -64,6 +65,8 @@ def at_value(dataset: "xr.Dataset", name: str, values: ArrayLike, branch: str) -
     )
     found, read = dict[str, xr.DataArray](), dict[str, Read]()
     curves = {name: reached} | _curves(result, name)
+    if PLASTIC in result.variables:
+        curves[LOADS] = lowest_so_far(alone(separation_of(result)))
     for label, array in curves.items():
         value, error, rise = xr.apply_ufunc(
             interpolate,
@@ -79,7 +82,7 @@ def at_value(dataset: "xr.Dataset", name: str, values: ArrayLike, branch: str) -
             output_dtypes=[np.float64] * 3,
         )
         read[label.removesuffix("_mean")] = Read(label, value, rise)
-        if label == name:
+        if label in (name, LOADS):
             continue
         attrs = {key: array.attrs[key] for key in ("units", "long_name") if key in array.attrs}
         about = {"long_name": f"interpolation error of the {attrs['long_name']}"}

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from roughmdr.model_error.at_given import ALWAYS, FORCES, NUMBERS, STATED, errors_at, first_of, largest_at_force
-from roughmdr.model_error.parts import PLASTIC
+from roughmdr.model_error.parts import PLASTIC, PLASTIC_AT_FORCE
 from roughmdr.numerics.arguments import Floats
 from roughmdr.result.curves import Read
 from roughmdr.result.view import Leg, ResultView
@@ -20,6 +20,8 @@ if TYPE_CHECKING:
     import xarray as xr
 
 _H = SEPARATION.name
+LOADS = "lowest_so_far"
+"""Name of ``lowest_so_far`` among curves that are read."""
 
 
 def attributes(name: str, given: str) -> dict[str, str]:
@@ -30,11 +32,11 @@ def attributes(name: str, given: str) -> dict[str, str]:
 
 
 def known_in(result: ResultView, curves: Collection[str], needed: Collection[str] = ALWAYS) -> list[str]:
-    """Return the names of ``curves`` whose error is known: of elastic contacts under a flat, with a force, not on a
-    lateral path.
+    """Return the names of ``curves`` whose error is known: under a flat, with a force, not on a lateral path, and not
+    where contacts yield and adhere.
     """
-    elastic = PLASTIC not in result.variables
-    told = elastic and set(result.variables) >= {*needed} and result.flat and result.control != LATERAL.name
+    told = PLASTIC not in result.variables or result.known(PLASTIC_AT_FORCE[0]).size > 0
+    told = told and set(result.variables) >= {*needed} and result.flat and result.control != LATERAL.name
     bare = {_bare(name): name for name in curves if _bare(name) in WITH_MODEL_ERROR}
     return list(bare.values()) if told and not set(FORCES).isdisjoint(bare) and _H in bare else []
 
@@ -55,7 +57,11 @@ def errors_there(
     unknown = np.nan * read[names[0]].value
     force = curves[labels[names.index(first_of(FORCES, names))]]
     largest, tension = abs(force).max("step"), (-force).max("step").clip(0.0)
-    numbers = (dataset.get(name, np.nan * dataset["interaction_error"]) for name in NUMBERS)
+
+    def number(name: str) -> "xr.DataArray":
+        found = dataset.get(name, np.nan * dataset["interaction_error"])
+        return found.where(read[LOADS].value == 1.0) if name in PLASTIC_AT_FORCE and LOADS in read else found
+
     errors = xr.apply_ufunc(
         errors_at,
         *(read[name].value if name in read else unknown for name in ("contact_fraction", STATED)),
@@ -63,7 +69,7 @@ def errors_there(
         tension,
         *(read[name].value for name in names),
         *(read[name].rise for name in names),
-        *numbers,
+        *map(number, NUMBERS),
         kwargs={"names": names, "given": given},
         output_core_dims=[[]] * len(labels),
         keep_attrs=False,
@@ -103,7 +109,9 @@ def errors_along(result: ResultView) -> dict[str, Array]:
     largest, tension = (np.fmax.reduce(each, axis=-1, keepdims=True, initial=0.0) for each in (np.abs(force), -force))
     known = np.where(np.isnan(curves[names.index(_H)]), np.nan, 1.0)  # both of a step, so that changes go together
     changes = [_changes(known * each, result.legs) for each in curves]
-    numbers = [values(name) for name in NUMBERS]
+    h = curves[names.index(_H)]
+    lower = np.where(h <= np.fmin.accumulate(h, axis=-1), 1.0, np.nan)
+    numbers = [values(name) * (lower if name in PLASTIC_AT_FORCE else 1.0) for name in NUMBERS]
     if "asperity_origin" not in held:  # in earlier versions the overlap of coupled hills alone is not known
         of_hills = np.isnan(values("overlap_fraction"))
         numbers[NUMBERS.index("asperity_origin")] = np.where(of_hills, ORIGINS.index("hills"), np.nan)
@@ -117,9 +125,15 @@ def errors_along(result: ResultView) -> dict[str, Array]:
     }
 
 
+def lowest_so_far(separation: "xr.DataArray") -> "xr.DataArray":
+    """Return 1 at the steps where the flat is at its lowest so far, 0 at others."""
+    lowest = separation.reduce(np.fmin.accumulate, "step", keep_attrs=False)
+    return (separation <= lowest).astype(np.float64)
+
+
 def largest_of_result(result: ResultView, cell: tuple[int, ...] = ()) -> dict[str, float]:
     """Return ``largest_at_force`` of all runs of a result, or of a cell; nothing under a body that is no flat."""
-    names = [name for name in (*NUMBERS, PLASTIC) if name in result.variables] if result.flat else []
+    names = [name for name in NUMBERS if name in result.variables] if result.flat else []
     return largest_at_force({name: result.variables[name].values[cell] for name in names})
 
 

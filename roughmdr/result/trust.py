@@ -13,12 +13,21 @@ from roughmdr.model_error.interaction import (
     ASPERITIES,
     HILLS,
     MOST_TENSION,
+    OF_ORIGIN,
     SUMMITS,
     TENSION,
     Coefficients,
     interaction_error,
 )
-from roughmdr.model_error.parts import ALL_PARTS, PARTS, PLASTIC, TRUSTED_ERROR, TRUSTED_FRACTION
+from roughmdr.model_error.parts import (
+    ALL_PARTS,
+    PARTS,
+    PLASTIC,
+    PLASTIC_AT_FORCE,
+    SOFTNESS,
+    TRUSTED_ERROR,
+    TRUSTED_FRACTION,
+)
 from roughmdr.numerics.arguments import Floats
 from roughmdr.result.hardness import hardness_lines
 from roughmdr.result.view import ResultView
@@ -41,7 +50,7 @@ _OPENINGS = {
     None: "asperities are independent: force at given separation off by",
     "mean_field": "asperities feel each other's mean displacement only: force at given separation off by",
 }
-_BESIDES = {PLASTIC, "grid_points", "asperity_origin"}
+_BESIDES = {PLASTIC, SOFTNESS, *PLASTIC_AT_FORCE, "grid_points", "asperity_origin"}
 _NAMES = {"model_error", *PARTS, "largest_contact_fraction", "trusted_separation", "overlap_fraction"}
 _BY_FRACTION = {"interaction_error", "largest_contact_fraction", "overlap_fraction"}
 _AT_PULL_OFF = "pull_off_contact_fraction"
@@ -89,7 +98,7 @@ def trust_lines(
     if not (known["model_error"] > 0.0).any():
         yield "trust", "no contact along the whole path"
         return
-    independent = interaction != "pairwise" and coefficients is ASPERITIES
+    independent = interaction != "pairwise" and coefficients is ASPERITIES and PLASTIC not in known
     at_force = [] if curved else _at_force(numbers, asperities=independent)
     if interaction == "pairwise":
         yield "model error", _coupling(known, summits)
@@ -99,7 +108,8 @@ def trust_lines(
     if coefficients is None:
         yield "model error", _neighbours(known)
     else:
-        errors = [f"{_interaction(float(fraction.max()), coefficients)} {place}" for fraction, place in places]
+        share = float(known["interaction_error"].max() / interaction_error(largest.max(), coefficients))
+        errors = [f"{_interaction(float(fraction.max()), coefficients, share)} {place}" for fraction, place in places]
         yield "model error", f"{_OPENINGS[interaction]} {errors[0]}"
         yield from (("", f"and by {error}") for error in errors[1:])
         if len(places) > 1:
@@ -195,7 +205,7 @@ def _trust(known: dict[str, Floats], coefficients: Coefficients | None, interact
         left_out = "asperities interact, which this scene leaves out" if interaction is None else "it is farther off"
         rest = f"; below it {left_out}: {there} at closest approach"
         parts["interaction_error"] = float(interaction_error(np.array(TRUSTED_FRACTION), coefficients or ASPERITIES))
-        contact = f" (contact {_percent(TRUSTED_FRACTION)})" if coefficients else ""
+        contact = f" (contact {_percent(TRUSTED_FRACTION)})" if coefficients and PLASTIC not in known else ""
         place = f"down to h = {format_quantity(float(beyond.max()), 'm')}{contact}"
     error = sum(parts.values())
     if error < 1.0:
@@ -257,15 +267,18 @@ def _coefficients(known: dict[str, Floats]) -> Coefficients | None:
     error, fraction = known["interaction_error"].max(), known["largest_contact_fraction"].max()
     kinds = (ASPERITIES, SUMMITS) if known["overlap_fraction"].size else (HILLS,)  # hills have no overlap
     by_fraction = {kind: float(interaction_error(fraction, kind)) for kind in kinds}
+    if PLASTIC in known:  # softer contacts have less of it
+        kind = [*OF_ORIGIN.values()][int(known["asperity_origin"].max())]
+        return kind if 0.0 < error <= by_fraction[kind] * (1.0 + _ROUNDING) else None
     return next((kind for kind, of in by_fraction.items() if math.isclose(error, of, rel_tol=_ROUNDING)), None)
 
 
-def _interaction(fraction: float, coefficients: Coefficients) -> str:
-    """Return in words the typical error by interaction at a contact fraction, and its range."""
+def _interaction(fraction: float, coefficients: Coefficients, share: float = 1.0) -> str:
+    """Return in words the typical error by interaction at a contact fraction, and its range; a ``share`` of it."""
     root, most = math.sqrt(fraction), float(interaction_error(np.array(fraction), coefficients))
     low, middle = coefficients.low * root, 0.5 * coefficients.least + coefficients.typical * root
-    low, middle = min(low, 1.0), min(middle, 1.0)
-    low_percent, middle_percent, most_percent = (_percent(part).removesuffix(" %") for part in (low, middle, most))
+    parts = (share * min(part, 1.0) for part in (low, middle, most))
+    low_percent, middle_percent, most_percent = (_percent(part).removesuffix(" %") for part in parts)
     return f"about {middle_percent} % ({low_percent} to {most_percent})"
 
 

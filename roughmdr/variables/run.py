@@ -67,6 +67,13 @@ YIELDED = {
 }
 """Units and meanings of the diagnostics of contacts that yield."""
 
+_BY_MODEL = {
+    "plasticity_area_error": "error of the contact area at given force on loading, by the model of yielding, at most",
+    "plasticity_stiffness_error": "error of the stiffness there, at most",
+    "plasticity_radius_error": "error of contact radii there, at most",
+    "plasticity_softness": "slope of the law over that of elastic contacts of the same radii, at closest approach",
+}
+
 RUN_DIAGNOSTICS = _diagnostics(
     Diagnostic(
         "run_time",
@@ -92,6 +99,7 @@ RUN_DIAGNOSTICS = _diagnostics(
         unstated=0.0,
         in_result=_plastic,
     ),
+    *(Diagnostic(name, "1", words, in_result=_plastic) for name, words in _BY_MODEL.items()),
     Diagnostic(
         "conductance_error",
         "1",

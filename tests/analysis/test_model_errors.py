@@ -11,7 +11,15 @@ from hypothesis import strategies as st
 from scenes import CONDUCTION, ensemble, scene
 
 import roughmdr as rm
-from roughmdr.model_error.at_force import METHODS, NAMES, QUANTITIES, pull_off_error, range_error, relative_at_force
+from roughmdr.model_error.at_force import (
+    METHODS,
+    NAMES,
+    QUANTITIES,
+    Interaction,
+    pull_off_error,
+    range_error,
+    relative_at_force,
+)
 from roughmdr.result.model_errors import errors_along
 from roughmdr.result.view import ResultView
 from roughmdr.variables import MODEL_ERROR
@@ -280,8 +288,10 @@ def test_errors_by_range_grow_with_it_and_the_stiffness_is_lost_at_the_largest_t
     interaction: float, fraction: float, by_jkr: float, left: float
 ) -> None:
     def errors(by_jkr: float, left: float) -> list[float]:
-        known = (np.array([value]) for value in (interaction, fraction, 0.0, by_jkr, left, 0.0, 0.0))
-        return [float(each[0]) for each in relative_at_force(*known)]
+        own, none = np.array([interaction]), np.zeros(1)
+        known = (np.array([value]) for value in (by_jkr, left, 0.0, 0.0))
+        found = relative_at_force(Interaction.of_elastic(own), np.array([fraction]), [none] * len(NAMES), *known)
+        return [float(each[0]) for each in found]
 
     found, without, far = errors(by_jkr, left), errors(0.0, left), errors(by_jkr, 1.0)
     assert all(0.0 <= low <= each <= 1.0 for low, each in zip(without, found, strict=True))

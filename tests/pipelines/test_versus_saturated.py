@@ -1,27 +1,51 @@
-"""Summits that yield beside saturated boundary elements."""
+"""Contacts that yield beside saturated boundary elements."""
 
+import math
 from pathlib import Path
 
 import numpy as np
 import pytest
-import xarray as xr
 from carried_out import carried_out
-from studies.versus_saturated import COMMAND, SOLVERS, STUDY
+from studies.versus_saturated import COMMAND, STUDY, SaturatedElements
+
+from roughmdr.elements.half_space import BoundaryElements
 
 
-def test_the_study_says_that_tamaas_is_not_there(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+def cosines(count: int) -> np.ndarray:
+    x = 2.0 * np.pi * (np.arange(count) + 0.5) / count
+    return np.asarray(1e-3 * (np.cos(x)[:, None] + np.cos(x) - 2.0))
+
+
+def test_elements_as_hard_as_can_be_are_elastic() -> None:
+    height = cosines(48)
+    hard, elastic = SaturatedElements(height, math.inf), BoundaryElements(height, np.ones(2))
+    for h in (-4e-4, -8e-4):
+        assert hard.press(h) == pytest.approx(elastic.press(h), rel=1e-4)
+
+
+def test_where_all_flows_the_load_is_the_hardness_times_the_area() -> None:
+    """The elements that flow are those above the flat, as little displaces them."""
+    height, most = cosines(48), 1e-6
+    soft = SaturatedElements(height, most)
+    assert soft.press(-1e-3) == pytest.approx(most * np.mean(height > -1e-3), rel=0.02)
+    assert soft.area() == pytest.approx(np.mean(height > -1e-3), rel=0.02)
+
+
+def test_no_pressure_is_above_the_hardness_and_gaps_go_with_pressures() -> None:
+    soft = SaturatedElements(cosines(48), 2e-3)
+    soft.press(-6e-4)
+    gap, flows = soft.displacement() - soft.height - 6e-4, soft.pressure == soft.most
+    assert soft.pressure.max() == soft.most
+    assert gap[flows].max() < 1e-8
+    assert gap[~flows].min() > -1e-8
+    assert np.abs(gap[(soft.pressure > 0.0) & ~flows]).max() < 1e-8
+
+
+@pytest.mark.large
+def test_the_study_tells_stated_errors_and_whether_tamaas_is_there(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
     monkeypatch.delenv(COMMAND, raising=False)
     with carried_out(STUDY, tmp_path) as studied:
-        assert f"the environment variable {COMMAND} holds no command" in studied.text
-        assert studied.result.sizes["case"] == 0
-
-
-def test_areas_are_told_over_those_of_saturated_elements() -> None:
-    area = np.array([0.1, 0.1, 0.11, 0.09, 0.04, 0.05])[:, None] * np.array([[[0.05]], [[1.0]]])
-    over, slope = ("case", "solver", "pressure"), ("case", [1.0, 3.0])
-    text = STUDY.report(
-        xr.Dataset({"area": (over, area)}, {"solver": list(SOLVERS), "slope": slope, "pressure": [0.1]})
-    )
-    for row in ("all", "1.0", "3.0"):
-        cells = (f"{off} % ({off} to {off})" for off in ("+0", "+10", "-10", "-60", "-50", "-20"))
-        assert f"| {row} | {' | '.join(cells)} |" in text
+        assert f"No {COMMAND} is set" in studied.text
+        assert "| summits, mdr | contact_fraction at given pressure |" in studied.text

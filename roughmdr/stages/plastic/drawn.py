@@ -13,9 +13,10 @@ from roughmdr.aggregate.totals import AREA, COUNT, FORCE
 from roughmdr.loading.path import LoadingPath
 from roughmdr.loading.pull_off import WITHOUT_TENSION, PullOff, locate, unloadings
 from roughmdr.loading.pull_off import prepare as prepare_pull_off
+from roughmdr.model_error.parts import Yielding
 from roughmdr.numerics.arguments import Floats
 from roughmdr.stages.plastic.body import LIMIT, Body, check_depth, range_warnings
-from roughmdr.stages.plastic.models import kernels_of, spread
+from roughmdr.stages.plastic.models import compare, kernels_of
 from roughmdr.stages.plastic.total import Sum, add_up, partings, rows_of
 
 _MOST_TOLD = 1000
@@ -74,9 +75,8 @@ class DrawnAsperities:
         def radius_at(separation: float) -> Floats:
             return np.asarray(self._along(np.array([separation]), {AREA}).closest[0])
 
-        law = law_of_totals(
-            problem, path, names, found.total, found.closest, radius_at, plasticity_error=self.spread(separation)
-        )
+        yielding = self.compared(separation)
+        law = law_of_totals(problem, path, names, found.total, found.closest, radius_at, yielding=yielding)
         pull_off = self._pull_off(separation, found.total[FORCE])
         visits = int(np.searchsorted(-self._height, -np.minimum.accumulate(separation)).sum())
         wide = range_warnings(self._kernels, found.closest[0], self._rows)
@@ -96,8 +96,8 @@ class DrawnAsperities:
         if tension > body.yield_strength:
             yield "dents are pulled harder than the yield strength before they are lost: they would neck"
 
-    def spread(self, separation: Floats) -> Floats:
-        """Return how much the forces of the models differ along separations [m], over the largest, at each step [1].
+    def compared(self, separation: Floats) -> Yielding:
+        """Return how much the models differ along separations [m].
 
         Of many asperities some tell it, each of so many in the order of their heights.
         """
@@ -106,7 +106,7 @@ class DrawnAsperities:
         some = touched[each // 2 :: each]
         ensemble = self._problem.ensemble
         parameter = ensemble.parameters[self._kernels.parameter][some]
-        return spread(self._model, self._body, ensemble.shape, self._height[some], parameter, separation)
+        return compare(self._model, self._body, ensemble.shape, self._height[some], parameter, separation)
 
     def shares(self, closest: float) -> dict[str, float]:
         """Return the shares of the contacts, and of the load of pushing ones, that have yielded at a separation [m]."""
@@ -152,4 +152,4 @@ def prepare(model: str, body: Body, shape: str) -> None:
     if kernels.adhesive:
         partings(kernels, height, rows, 0.0, body)
         prepare_pull_off()
-    spread(model, body, shape, height, ones, height)
+    compare(model, body, shape, height, ones, height)

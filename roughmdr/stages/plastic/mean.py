@@ -250,8 +250,8 @@ class MeanAsperities:
         problem = MeanProblem(self._source, path, body.effective_modulus, Adhesion(0.0), (FORCE,))
         nodes = self._source.nodes(Rule.smooth(self.order))
         limits = as_ensemble(self._source, nodes).validity_limits
-        difference = self._drawn.spread(separation)
-        law = law_of_means(problem, names, total, radii, limits, JkrValidity(), plasticity_error=difference)
+        yielding = self._drawn.compared(separation)
+        law = law_of_means(problem, names, total, radii, limits, JkrValidity(), yielding=yielding)
         apart = ends_apart(unloadings(separation, total[FORCE]), total[COUNT])
         pull_off = WITHOUT_TENSION if apart else PullOff()
         wide = range_warnings(self._kernels, radii, np.array([node.asperity for node in self._nodes(self.order)]))

@@ -57,14 +57,17 @@ def _lost(deepest: float, mark: Mark, asperity: Floats, body: Body) -> float:
 
 @njit
 def _saturated_state(indentation: float, rise: float, mark: Mark, asperity: Floats, body: Body) -> State:
-    """The force where no pressure exceeds the limit, which a ring at the edge reaches at once; none else is told.
+    """The contact where no pressure exceeds the limit, which a ring at the edge reaches at once; no energy is told.
 
     Springs bear 2 p sqrt(b^2 - x^2) in that ring, E* d inside it; they unload along the elastic line.
     """
-    radius, limit = asperity[RADIUS], LIMIT_PRESSURE * body.yield_strength
+    radius, limit, whole = asperity[RADIUS], LIMIT_PRESSURE * body.yield_strength, 2.0 * body.effective_modulus
     sine = min(0.5 * body.effective_modulus * (indentation + rise) / (limit * radius), 1.0)
-    force = 2.0 * limit * radius * radius * (math.asin(sine) + sine * math.sqrt(1.0 - sine * sine))
-    return State(max(force - 2.0 * body.effective_modulus * radius * rise, 0.0), 0.0, 0.0, 0.0)
+    cosine = math.sqrt(1.0 - sine * sine)
+    force = 2.0 * limit * radius * radius * (math.asin(sine) + sine * cosine) - whole * radius * rise
+    if force <= 0.0:
+        return State(0.0, 0.0, 0.0, 0.0)
+    return State(force, radius, whole * radius * (1.0 if rise > 0.0 else cosine), 0.0)
 
 
 @once
