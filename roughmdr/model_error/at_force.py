@@ -52,7 +52,7 @@ class Interaction(NamedTuple):
     elastic: Floats
     """The error if contacts of these radii were elastic."""
     softness: Floats | float
-    """What yielding has left of it, but for flanks of summits."""
+    """Share that yielding has left of it, but for flanks of summits."""
 
     @classmethod
     def of_elastic(cls, own: Floats) -> "Interaction":

@@ -88,7 +88,7 @@ class Assumptions(NamedTuple):
     neighbours_error: Floats | None = None
     """The error of independent ones from their distances, at each step; None to take it from the contact fraction."""
     yielding: Yielding | None = None
-    """What is known of contacts that yield; None for elastic ones."""
+    """Numbers of contacts that yield; None for elastic ones."""
 
 
 class ModelError(NamedTuple):

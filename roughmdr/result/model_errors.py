@@ -110,7 +110,8 @@ def errors_along(result: ResultView) -> dict[str, Array]:
     known = np.where(np.isnan(curves[names.index(_H)]), np.nan, 1.0)  # both of a step, so that changes go together
     changes = [_changes(known * each, result.legs) for each in curves]
     h = curves[names.index(_H)]
-    lower = np.where(h <= np.fmin.accumulate(h, axis=-1), 1.0, np.nan)
+    before = np.fmin.accumulate(np.insert(h, 0, np.inf, axis=-1), axis=-1)[..., :-1]
+    lower = np.where(h < before, 1.0, np.nan)
     numbers = [values(name) * (lower if name in PLASTIC_AT_FORCE else 1.0) for name in NUMBERS]
     if "asperity_origin" not in held:  # in earlier versions the overlap of coupled hills alone is not known
         of_hills = np.isnan(values("overlap_fraction"))
@@ -126,9 +127,9 @@ def errors_along(result: ResultView) -> dict[str, Array]:
 
 
 def lowest_so_far(separation: "xr.DataArray") -> "xr.DataArray":
-    """Return 1 at the steps where the flat is at its lowest so far, 0 at others."""
+    """Return 1 at the steps where the flat is lower than ever before, 0 at others."""
     lowest = separation.reduce(np.fmin.accumulate, "step", keep_attrs=False)
-    return (separation <= lowest).astype(np.float64)
+    return (separation < lowest.shift(step=1, fill_value=np.inf)).astype(np.float64)
 
 
 def largest_of_result(result: ResultView, cell: tuple[int, ...] = ()) -> dict[str, float]:

@@ -150,7 +150,8 @@ def _at_force(numbers: Numbers, *, asperities: bool) -> list[str]:
     area, stiffness, conductance, _ = shares
     large, small = (", mostly too large", ", mostly too small") if asperities else ("", "")
     stiff = f"and conductance {stiffness}" if stiffness == conductance else f"{stiffness}, conductance {conductance}"
-    return [f"at given pressure at most: contact area {area}{large}; stiffness {stiff}{small}"]
+    given = "given pressure on loading" if PLASTIC in numbers else "given pressure"
+    return [f"at {given} at most: contact area {area}{large}; stiffness {stiff}{small}"]
 
 
 def _has_summits(table: dict[str, Any]) -> bool:

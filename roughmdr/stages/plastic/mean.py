@@ -52,7 +52,8 @@ _ORDERS = (4, 8, 16, 32, 64)
 """Scores of the rule over the radii, one after the other."""
 _RTOL = 1e-7  # change of the force, over the largest, at which the rule is fine enough: kinks make it converge slowly
 _DOUBT = 4.0  # error of a rule over its last change: kinks and jumps over a shape parameter make it fall slowly
-_LEAST = 1e-8  # least error of such a rule: orders may agree by chance where fitted laws have kinks
+_LEAST = 1e-6  # least error of such a rule: orders may agree by chance to _RTOL where laws have kinks
+_JUMP = 0.08  # largest jump of a fitted law, over its force
 _GROWTH = 2.0  # power of the indentation by which forces grow at most: those of cones
 _HALVINGS = 60  # halvings that locate the edge of contact
 _BESIDE = 1e-9  # distance over the interval at which a contact has just yielded
@@ -205,7 +206,8 @@ class MeanAsperities:
     def _at_order(self, separation: Floats, rows: set[int], order: int) -> Floats:
         """Return the totals of all asperities [row, step] by a rule over the radii."""
         total, kernels, body = np.zeros((TOTAL_ROWS, separation.size)), self._kernels, self._body
-        for fraction, heights, asperity in self._nodes(order):
+        nodes, largest = self._nodes(order), np.zeros(separation.size)
+        for fraction, heights, asperity in nodes:
             own, relative = np.zeros_like(total), separation - heights.origin
             if heights.all_equal:
                 own = add_up(kernels, np.zeros(1), asperity[None], relative, body, rows).total
@@ -217,6 +219,11 @@ class MeanAsperities:
                     edge = kernels.state(top, 0.0, mark, asperity, body).force
                     own[ERROR] += edge * heights.tail.over_edge(_GROWTH)
             total += fraction * own
+            largest = np.maximum(largest, fraction * own[FORCE])
+        if all(node.heights.all_equal for node in nodes):  # the rule over radii misses up to a node next to a jump
+            depth = np.array([(node.heights.origin - separation) / node.asperity[LIMIT] for node in nodes])
+            for kink in {1.0, *kernels.kinks} - {math.inf} if self._model != "mdr" else ():
+                total[ERROR] += _JUMP * largest * ((depth < kink).any(axis=0) & (depth > kink).any(axis=0))
         total[CONDUCTANCE] = total[RADIUS]
         return np.asarray(self._source.expected_count * total)
 
