@@ -259,15 +259,14 @@ class MeanAsperities:
         limits = as_ensemble(self._source, nodes).validity_limits
         yielding = self._drawn.compared(separation)
         law = law_of_means(problem, names, total, radii, limits, JkrValidity(), yielding=yielding)
-        apart = ends_apart(unloadings(separation, total[FORCE]), total[COUNT])
-        pull_off = WITHOUT_TENSION if apart else PullOff()
+        pull_off = WITHOUT_TENSION if ends_apart(unloadings(separation, total[FORCE]), total[COUNT]) else PullOff()
         wide = range_warnings(self._kernels, radii, np.array([node.asperity for node in self._nodes(self.order)]))
         told = (*warnings, *wide, *law.warnings)
         return law._replace(warnings=told, pull_off=pull_off, yielding=lambda: self._drawn.shares(closest))
 
     def _converged(self, separation: Floats, rows: set[int]) -> tuple[Floats, Floats]:
         """Return totals by a rule over the radii that is fine enough, and not coarser than the last one, and the error
-        of each over its largest: the last change, or the last two where the force still changes.
+        of each over its largest: by the last change, or the last two where the force still changes.
         """
         fixed = self._source.node_count(2) == self._source.node_count(1)
         before, changes = None, [np.zeros(TOTAL_ROWS)]
