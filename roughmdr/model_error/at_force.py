@@ -45,7 +45,7 @@ class AtForce(NamedTuple):
     root: float = 0.0
 
 
-class Interaction(NamedTuple):
+class ByInteraction(NamedTuple):
     """Errors by interaction of the force at given separation [1]."""
 
     own: Floats
@@ -55,7 +55,7 @@ class Interaction(NamedTuple):
     """Share that yielding has left of it, but for flanks of summits."""
 
     @classmethod
-    def of_elastic(cls, own: Floats) -> "Interaction":
+    def of_elastic(cls, own: Floats) -> "ByInteraction":
         """Return the errors of elastic contacts."""
         return cls(own, own, 1.0)
 
@@ -150,7 +150,12 @@ def by_range(of_force: Floats, tabor: Floats, largest: Floats) -> Floats:
 
 
 def relative_at_force(
-    interaction: Interaction, fraction: Floats, others: Sequence[Floats], of_range: Floats, left: Floats, *known: Floats
+    interaction: ByInteraction,
+    fraction: Floats,
+    others: Sequence[Floats],
+    of_range: Floats,
+    left: Floats,
+    *known: Floats,
 ) -> list[Floats]:
     """Return the relative errors [1] of the quantities at given force, at most 1: [...] each.
 
@@ -191,7 +196,7 @@ def interaction_along(
 
 def softened(
     largest: Floats, softness: Floats, fraction: Floats, largest_fraction: Floats, origin: Floats, grid: Floats
-) -> Interaction:
+) -> ByInteraction:
     """Return errors by interaction of independent contacts that yield, as ``interaction_along``.
 
     ``softness`` is that at the largest contact fraction, towards which contacts become softer, slowly; NaN where they
@@ -203,7 +208,7 @@ def softened(
     lighter = (largest_fraction / np.where(fraction > 0.0, fraction, np.inf)) ** _SOFTENING
     soft = np.where(np.isnan(softness), 1.0, np.minimum(softness * lighter, 1.0))
     own = np.where(largest > there, along, flanks + soft * (here - flanks)) * (largest > 0.0)
-    return Interaction(own, np.maximum(own, here * (largest > 0.0)), soft)
+    return ByInteraction(own, np.maximum(own, here * (largest > 0.0)), soft)
 
 
 def _elastic(fraction: Floats, origin: Floats, grid: Floats) -> Floats:

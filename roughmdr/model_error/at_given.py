@@ -14,7 +14,7 @@ from roughmdr.model_error.at_force import (
     NAMES,
     QUANTITIES,
     RELEASING,
-    Interaction,
+    ByInteraction,
     by_range,
     interaction_along,
     relative_at_force,
@@ -106,7 +106,7 @@ def _relative_errors(
     sticky_hills = (origin == ORIGINS.index("hills")) & np.isfinite(numbers["avalanche_count"])
     over_largest = np.where(sticky_hills, whole, of_jkr)  # which hills attraction with a range makes sooner
     pulled = numbers["by_range"], numbers["left"]
-    shared = shared if yields.any() else Interaction.of_elastic(own)
+    shared = shared if yields.any() else ByInteraction.of_elastic(own)
     at_force = relative_at_force(shared, fraction, _at_force(numbers), *pulled, origin, grid)
     return whole - over_largest, over_largest + by_model * ~loads * np.isnan(stated), at_force
 
@@ -123,7 +123,7 @@ def largest_at_force(numbers: Mapping[str, Any]) -> dict[str, float]:
     of = {name: np.asarray(numbers.get(name, np.nan), dtype=np.float64)[..., None] for name in NUMBERS}
     own, fraction, origin, grid = (of[name] for name in ("interaction_error", "largest_contact_fraction", *_METHOD))
     by_jkr, none = by_range(of[_BY_JKR], of["tabor_number"], np.ones(1)), np.ones(1)
-    shared = softened(own, of[SOFTNESS], fraction, fraction, origin, grid) if yields else Interaction.of_elastic(own)
+    shared = softened(own, of[SOFTNESS], fraction, fraction, origin, grid) if yields else ByInteraction.of_elastic(own)
     found = relative_at_force(shared, fraction, _at_force(of), by_jkr, none, origin, grid)
     return {name: float(np.fmax.reduce(each, axis=None)) for name, each in zip(NAMES, found, strict=True)}
 
