@@ -29,7 +29,9 @@ def test_what_a_stage_declares_is_there(stage: type[Stage]) -> None:
     section = read(table).stage(stage)
     assert section is not None
     assert section.attributes().keys() <= RESULT_ATTRIBUTES.keys()
-    assert stage.cites(table, list(OUTPUT_VARIABLES)) == stage.papers
+    cited = stage.cites(table, list(OUTPUT_VARIABLES))
+    assert cited.items() <= stage.papers.items()
+    assert bool(cited) == bool(stage.papers)
     assert stages_in(table) == [stage]
     assert section.coarse().model_fields_set >= section.model_fields_set - {"error"}
 

@@ -24,7 +24,7 @@ from roughmdr.scene import read
 from roughmdr.stages.plastic.body import LIMIT, Body
 from roughmdr.stages.plastic.drawn import DrawnAsperities
 from roughmdr.stages.plastic.mean import MeanAsperities
-from roughmdr.stages.plastic.models import kernels_of, spread
+from roughmdr.stages.plastic.models import compare, kernels_of
 from roughmdr.stages.plastic.total import add_up, rows_of
 
 few = settings(deadline=None, max_examples=30)
@@ -268,24 +268,44 @@ def test_other_estimates_differ() -> None:
     """Rough punches bear 6.05/5.69; cones that pile up, or bear the pressure of the core alone, and elastic ones."""
     deep = -np.array([1e-9, 1.0, 1.27323955, 10.0])  # over the indentation at the limit load
     punch = Contact("flat_punch", 1.0, 1e-3)
-    found = spread("mdr", punch.body, "flat_punch", np.zeros(1), np.ones(1), punch.row[LIMIT] * deep)
+    found = compare("mdr", punch.body, "flat_punch", np.zeros(1), np.ones(1), punch.row[LIMIT] * deep).force
     sine = math.pi / 4.0
     saturated = 2.0 / math.pi * (math.asin(sine) + sine * math.sqrt(1.0 - sine**2))
     assert found[1:] == pytest.approx([1.0 - saturated, 3.025 / 2.845 - 1.0, 3.025 / 2.845 - 1.0], rel=1e-9)
     assert 0.0 <= found[0] < 1e-17
     for stiff in (0.9, 1.5, 10.0, 100.0, 1e9):
         own, core, piled_up = (cone_force(stiff, *each) for each in ((2.0 / 3.0, 1.0), (0.0, 1.0), (2.0 / 3.0, 0.8)))
-        error = spread("mdr", of(0.1 / stiff), "cone", np.zeros(1), np.array([0.1]), -np.array([0.1, 1.0]))
+        error = compare("mdr", of(0.1 / stiff), "cone", np.zeros(1), np.array([0.1]), -np.array([0.1, 1.0])).force
         assert error[1] == pytest.approx(max(abs(core - own), abs(piled_up - own)) / own, rel=1e-9)
         assert error[0] == pytest.approx(0.01 * error[1], rel=1e-12)
         assert (error[1] == 0.0) == (stiff < 1.0)
 
 
+def test_other_estimates_differ_at_equal_force() -> None:
+    dry = Contact("flat_punch", 1.0, 1e-3)
+    flowing = compare("mdr", dry.body, "flat_punch", np.zeros(1), np.ones(1), -2.0 * dry.row[LIMIT : LIMIT + 1])
+    assert flowing.at_force == (0.0, 1.0, 0.0)  # all have the same radius, and some have no stiffness
+    assert flowing.softness == 0.0
+    for stiff in (10.0, 40.0, 1e4):
+        area, stiffness, radii = compare(
+            "mdr", of(0.1 / stiff), "cone", np.zeros(1), np.array([0.1]), -np.ones(1)
+        ).at_force
+        own, core = cone_pressure(stiff, 2.0 / 3.0), cone_pressure(stiff, 0.0)
+        assert area == pytest.approx(1.0 - core / own, rel=1e-9)
+        assert radii == pytest.approx(1.0 - math.sqrt(core / own), rel=1e-9)
+        assert 0.1 < stiffness < 0.5
+
+
 def cone_force(stiff: float, share: float, rigid: float) -> float:
     """Force over Y (d/S)^2 of a cone with E* S/Y = ``stiff`` and Poisson's ratio 0.3."""
-    core = 2.0 / 3.0 * (1.0 + math.log((0.91 * stiff + 1.6) / 4.2))
-    p = min(max(core + share, 0.5), 2.845, 0.5 * stiff)
+    p = cone_pressure(stiff, share)
     return math.pi * p / (rigid + (math.pi - 2.0 * rigid) * p / stiff) ** 2
+
+
+def cone_pressure(stiff: float, share: float) -> float:
+    """Mean pressure over Y of a cone."""
+    core = 2.0 / 3.0 * (1.0 + math.log((0.91 * stiff + 1.6) / 4.2))
+    return min(max(core + share, 0.5), 2.845, 0.5 * stiff)
 
 
 def source(shape: str, own: Any, count: int = MOST) -> Any:

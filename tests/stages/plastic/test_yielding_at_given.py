@@ -69,7 +69,9 @@ def test_of_the_branches_of_a_law_loading_alone_has_errors_of_areas() -> None:
 
 def compared(model: str, scale: float = 1.0, body: Body = BODY) -> Yielding:
     heights, radii = np.random.default_rng(3).normal(0.0, 1e-6, 400), np.full(400, 1e-3)
-    return compare(model, body, scale * np.sort(heights)[::-1], scale * radii, scale * np.linspace(3e-6, 5e-7, 9))
+    return compare(
+        model, body, "paraboloid", scale * np.sort(heights)[::-1], scale * radii, scale * np.linspace(3e-6, 5e-7, 9)
+    )
 
 
 def test_models_differ_as_much_either_way_and_in_other_units() -> None:
@@ -89,5 +91,5 @@ def test_contacts_that_adhere_or_do_not_touch_tell_nothing() -> None:
     sticky = compared("mdr", body=BODY._replace(work=0.01))
     assert np.isnan(sticky.at_force).all()
     assert (sticky.softness == 1.0).all()
-    apart = compare("mdr", BODY, np.zeros(2), np.ones(2), np.array([1.0, 0.5]))
+    apart = compare("mdr", BODY, "paraboloid", np.zeros(2), np.ones(2), np.array([1.0, 0.5]))
     assert apart.at_force == (0.0,) * len(PLASTIC_AT_FORCE)
