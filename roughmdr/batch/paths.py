@@ -108,7 +108,7 @@ def target_stop(scene: Scene, target: Target, start: float) -> float:
 def _law(scene: Scene, start: float) -> Callable[[Floats, list[str]], Floats]:
     """Return the function: falling separations [m] -> variables [name, step] there, in loading from ``start`` [m].
 
-    Coupled contacts come from infinity, which is the same, and go on from where they have been.
+    Coupled contacts, for which the start makes no difference, go on from where they have been.
     """
     source, begin = scene.asperities, np.empty(0) if scene.needs_positions else np.array([start])
     expected = source.is_random and not scene.reason_against("expected")

@@ -11,6 +11,7 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from oracles.multiprecision import mp
 from oracles.plastic import Springs
+from single import Single
 
 import roughmdr as rm
 from roughmdr.aggregate import LoadingPath, simulate
@@ -37,7 +38,7 @@ STATES = [FORCE, AREA, COUNT, STIFFNESS, ENERGY]
 STD, MOST = 1e-6, 1000
 
 
-class Contact:
+class Contact(Single):
     """One cone or flat punch on a body with E* = 1 Pa, in units of a length [m] and a pressure [Pa]."""
 
     def __init__(
@@ -45,22 +46,8 @@ class Contact:
         units: tuple[float, float] = (1.0, 1.0),
     ) -> None:  # fmt: skip
         length, pressure = units
-        self.body = Body(pressure, yield_strength * pressure, sticky * length * pressure, poisson, math.inf, 0.0)
-        self.kernels: Any = kernels_of("mdr", self.body, shape)
-        self.rows = rows_of(self.kernels, np.array([own * (length if shape == "flat_punch" else 1.0)]), self.body)
-        self.row = self.rows[0]
-
-    def mark(self, deepest: float) -> Any:
-        return self.kernels.mark(deepest, self.row, self.body)
-
-    def ends(self, deepest: float) -> tuple[float, float]:
-        return self.kernels.ends(deepest, self.mark(deepest), self.row, self.body)
-
-    def state(self, deepest: float, rise: float = 0.0) -> Any:
-        return self.kernels.state(deepest - rise, rise, self.mark(deepest), self.row, self.body)
-
-    def lost(self, deepest: float) -> float:
-        return self.kernels.lost(deepest, self.mark(deepest), self.row, self.body)
+        body = Body(pressure, yield_strength * pressure, sticky * length * pressure, poisson, math.inf, 0.0)
+        super().__init__(kernels_of("mdr", body, shape), own * (length if shape == "flat_punch" else 1.0), body)
 
     def along(self, indentation: Floats) -> Floats:
         return add_up(self.kernels, np.zeros(1), self.rows, -np.asarray(indentation), self.body, ALL).total

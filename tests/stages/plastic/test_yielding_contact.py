@@ -8,13 +8,14 @@ import numpy as np
 import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
+from single import Single
 
 from roughmdr.aggregate.totals import DISSIPATED, ENERGY, FORCE
 from roughmdr.numerics.arguments import Floats
 from roughmdr.numerics.gauss import gauss
-from roughmdr.stages.plastic.body import LIMIT, SQUARE, Body, Mark
+from roughmdr.stages.plastic.body import LIMIT, SQUARE, Body
 from roughmdr.stages.plastic.mdr import kernels, yield_pressure
-from roughmdr.stages.plastic.total import add_up, rows_of
+from roughmdr.stages.plastic.total import add_up
 
 few = settings(deadline=None, max_examples=30)
 STIFF = st.floats(0.0, 8.0).map(lambda power: 10.0**power)  # E*/Y
@@ -22,28 +23,14 @@ STICKY = st.one_of(st.just(0.0), st.floats(-9.0, -1.0).map(lambda power: 10.0**p
 SQUARED = st.sampled_from([0.0, 1.0])
 
 
-class Contact:
+class Contact(Single):
     """One asperity of radius 1 m on a body with E* = 1 Pa, in units of a length [m] and a pressure [Pa]."""
 
     def __init__(self, stiff: float, sticky: float, squared: float = 0.0, units: Any = (1.0, 1.0)) -> None:
         length, pressure = units
-        self.kernels: Any = kernels(adhesive=sticky > 0.0)
-        self.body = Body(pressure, pressure / stiff, sticky * length * pressure, 0.3, math.inf, squared)
-        self.rows = rows_of(self.kernels, np.array([length]), self.body)
-        self.row = self.rows[0]
+        body = Body(pressure, pressure / stiff, sticky * length * pressure, 0.3, math.inf, squared)
+        super().__init__(kernels(adhesive=sticky > 0.0), length, body)
         self.limit = float(self.row[LIMIT])
-
-    def mark(self, deepest: float) -> Mark:
-        return self.kernels.mark(deepest, self.row, self.body)
-
-    def ends(self, deepest: float) -> tuple[float, float]:
-        return self.kernels.ends(deepest, self.mark(deepest), self.row, self.body)
-
-    def state(self, deepest: float, rise: float = 0.0) -> Any:
-        return self.kernels.state(deepest - rise, rise, self.mark(deepest), self.row, self.body)
-
-    def lost(self, deepest: float) -> float:
-        return self.kernels.lost(deepest, self.mark(deepest), self.row, self.body)
 
     def along(self, indentation: Floats) -> Floats:
         rows = {FORCE, ENERGY, DISSIPATED}
