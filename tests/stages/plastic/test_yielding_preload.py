@@ -1,6 +1,7 @@
 """Contacts that adhere and yield, pressed to a preload and pulled off: a plain twin, limits, energies, refusals."""
 
 import math
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -69,8 +70,11 @@ class Rough:
     def elastic(self, load: float, steps: int = 12) -> Any:
         return simulate(self.problem, self.path(Preload("force", load * self.force), steps), NAMES)
 
-    def first_bearing(self, load: float) -> float:
-        """Separation where contacts bear a load first: between two touches, where the force rises, by halving."""
+    def first_bearing(self, load: float) -> float | None:
+        """Separation where contacts bear a load first: between two touches, where the force rises, by halving.
+
+        None if the highest is pressed deeper than 0.2: contacts may then be larger than the nominal area.
+        """
         kernels: Any = kernels_of("mdr", self.body)
         rows = rows_of(kernels, self.radius, self.body)
 
@@ -81,8 +85,9 @@ class Rough:
                 total += kernels.state(z - h, 0.0, mark, row, self.body).force
             return total
 
-        ends = [*self.height[1:].tolist(), self.height[-1] - 100.0 * self.length]
-        for touched, (above, below) in enumerate(zip(self.height.tolist(), ends, strict=True), start=1):
+        deepest = float(self.height[0]) - 0.2 * self.length
+        heights = [h for h in self.height.tolist() if h > deepest]
+        for touched, (above, below) in enumerate(pairwise([*heights, deepest]), start=1):
             high, low = above, below
             if force(low, touched) < load * self.force:
                 continue
@@ -90,7 +95,7 @@ class Rough:
                 middle = 0.5 * (low + high)
                 low, high = (middle, high) if force(middle, touched) >= load * self.force else (low, middle)
             return float(low)
-        raise AssertionError("no load is that large")
+        return None
 
 
 def close(found: Floats, exact: Floats | float, scale: float) -> None:
@@ -110,8 +115,8 @@ def test_the_turning_point_is_where_the_load_is_borne_first(
 ) -> None:
     rough = Rough(stiff, sticky, seed=seed, units=units)
     plain = rough.first_bearing(load)
-    if rough.height[0] - plain > 0.4 * rough.length:
-        return  # too deep for the radius
+    if plain is None:
+        return
     found = rough.law(load).variables
     close(found["separation"][11:13], plain, 1e-12 * (rough.height[0] - plain))
     close(found["force"][11:13], load * rough.force, 1e-10 * rough.force * (load + rough.body.work / rough.force))
