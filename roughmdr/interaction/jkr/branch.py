@@ -15,6 +15,7 @@ from roughmdr.interaction.jkr.equilibrium import Drive, PairProblem, State, Step
 from roughmdr.interaction.jkr.factors import Factors, Lead
 from roughmdr.interaction.jkr.newton import newton
 from roughmdr.interaction.jkr.tangent import Tangent, leading
+from roughmdr.numerics.arguments import Floats
 
 _LARGEST_CHANGE = 0.2  # largest relative change of a state in one continuation step
 _NEAR = 0.8  # change of the logarithm of a state on one path
@@ -75,18 +76,24 @@ def piece(problem: PairProblem, here: Place, drive: Drive) -> tuple[Place, Fold 
         return Place(moved(problem, state, nothing, drive), factors, 1.0), None
     if leads is not None:
         return _led(problem, here, drive, leads)
-    edge, gap = Tangent(problem, state, drive).along()
+    tangent = Tangent(problem, state, drive)
+    edge, gap = tangent.along()
     rate = factors.solve(-edge, -gap)
-    fastest = np.abs(rate.radius) / (state.contacts.slope * state.t)
-    largest = float(fastest.max())
-    if largest * rest <= _LARGEST_CHANGE:
+    if float(_speeds(state, rate).max()) * rest <= _LARGEST_CHANGE:
         new, _ = newton(problem, _further(problem, here, rate, rest, drive), drive, factors)
         if there := _stable(problem, here, new, 1.0):
             corner = _at_corner(new) if problem.kernels.flat else None
             return there, corner
-    lead = int(np.argmax(fastest))
+    whole = tangent.rate(factors, _SIGN_RTOL)  # near a fold another contact may be the fastest with it
+    rate = whole if np.isfinite(whole.radius).all() else rate
+    lead = int(np.argmax(_speeds(state, rate)))
     slope = abs(1.0 / rate.radius[lead])
     return _led(problem, here, drive, Fast(lead, bool(rate.radius[lead] > 0.0), float(state.t[lead]), slope))
+
+
+def _speeds(state: State, rate: Step) -> Floats:
+    """Return the relative changes of the states of contacts along the path."""
+    return np.asarray(np.abs(rate.radius) / (state.contacts.slope * state.t))
 
 
 def _further(problem: PairProblem, here: Place, rate: Step, change: float, drive: Drive) -> State:
