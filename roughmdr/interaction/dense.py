@@ -24,6 +24,16 @@ def _fill(x: Floats, y: Floats, patch: Periodic, periodic: bool, first: int, mat
                 matrices[row, j, i] = field[row] if row in (0, 3) or i == j else -field[row]
 
 
+@njit
+def _sum_at(matrix: Floats, points: NDArray[np.int64], sources: NDArray[np.int64], source: Floats, out: Floats) -> None:
+    """Fill the sums over sources at points, which are few of all: a copy of their part would take longer."""
+    for i in points:
+        total = 0.0
+        for j in sources:
+            total += matrix[i, j] * source[j]
+        out[i] = total
+
+
 class Dense:
     """Matrices of G, its slopes and its Laplacian, [row, asperity, asperity], in units of the patch.
 
@@ -48,6 +58,10 @@ class Dense:
             self._last = kept, part
         return self._last[1]
 
+    def beside(self, known: NDArray[np.int64]) -> "Beside":
+        """Return them for the displacement of all points but those known."""
+        return Beside(self.matrices, known)
+
     def none(self) -> "Dense":
         """Return matrices of 0."""
         none = copy(self)
@@ -65,18 +79,42 @@ class Dense:
 
     def field(self, load: Floats) -> Floats:
         """Return displacement, slopes and Laplacian at each point by point loads, [row, asperity]."""
-        if 2 * np.count_nonzero(load) < load.size:
-            touching = np.flatnonzero(load)
-            return np.asarray(self.matrices[:, :, touching] @ load[touching])
+        if not load.any():
+            return np.zeros((4, load.size))
         return (self.matrices.reshape(4 * load.size, load.size) @ load).reshape(
             4, -1
         )  # by one product of a matrix and a vector
 
     def of_moments(self, laplacian: Floats, along_x: Floats, along_y: Floats) -> Floats:
         """Return the displacement by sources of the Laplacian and of the slopes of G."""
+        if not (laplacian.any() or along_x.any() or along_y.any()):
+            return np.zeros(laplacian.size)
         _, x, y, lap = self.matrices
-        if 2 * np.count_nonzero(laplacian) < laplacian.size:
-            touching = np.flatnonzero(laplacian)
-            lap, x, y = (each[:, touching] for each in (lap, x, y))
-            laplacian, along_x, along_y = laplacian[touching], along_x[touching], along_y[touching]
         return np.asarray(lap @ laplacian + x @ along_x + y @ along_y)
+
+
+class Beside:
+    """Matrices as they displace some of the points; for the others there are 0."""
+
+    error = 0.0
+
+    def __init__(self, matrices: Floats, known: NDArray[np.int64]) -> None:
+        self._matrices = matrices
+        self._points = np.delete(np.arange(matrices.shape[1]), known)
+
+    def potential(self, load: Floats) -> Floats:
+        """Return the displacement by point loads."""
+        return self._sums(0, load)
+
+    def field(self, load: Floats) -> Floats:
+        """Return displacement, slopes and Laplacian by point loads, [row, asperity]."""
+        return np.array([self._sums(row, load) for row in range(4)])
+
+    def of_moments(self, laplacian: Floats, along_x: Floats, along_y: Floats) -> Floats:
+        """Return the displacement by sources of the Laplacian and of the slopes of G."""
+        return self._sums(3, laplacian) + self._sums(1, along_x) + self._sums(2, along_y)
+
+    def _sums(self, row: int, source: Floats) -> Floats:
+        sums = np.zeros(source.size)
+        _sum_at(self._matrices[row], self._points, np.flatnonzero(source), source, sums)
+        return sums

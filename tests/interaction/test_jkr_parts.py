@@ -117,6 +117,27 @@ def test_factors_of_the_second_order_near_the_tangent_with_distance(name: str) -
         assert math.log2(off[1] / off[2]) > 3.9
 
 
+@pytest.mark.parametrize(("overlapping", "order"), [(False, 1), (True, 1), (False, 2), (True, 2)])
+@pytest.mark.parametrize("name", EXAMPLES)
+def test_what_is_known_of_some_is_not_found_again(name: str, overlapping: bool, order: int) -> None:
+    """Two in contact and two beside them: both ways the state is that of all at once."""
+    problem, state = guess(EXAMPLES[name], AT, order, overlapping=overlapping)
+    inside = np.array([True, True, False, False])
+    outer = 1e-3 * np.random.default_rng(3).normal(size=(5, 4)) * np.abs(np.vstack([state.field, state.field[:1]]))
+    whole = evaluate(problem, inside, state.t * inside, state.load * inside, -1e-6, outer)
+    kept = np.array([0, 1, 3])
+    few = equilibrium.part_of(problem.part(kept), kept, whole)
+    again = equilibrium.among(problem, kept, few, outer)
+    fewer = evaluate(problem.part(kept), *(each[kept] for each in whole[:3]), -1e-6, outer[:, kept])
+    for found, exact in ((again, whole), (few, fewer)):
+        assert found.error == pytest.approx(exact.error, rel=1e-12)
+        for field in ("field", "potential", "by_loads", "release", "edge", "gap", "t", "load", "outer", "inside"):
+            scale = np.abs(getattr(whole, field)).max()
+            np.testing.assert_allclose(getattr(found, field), getattr(exact, field), rtol=1e-12, atol=1e-14 * scale)
+        for one, other in zip((*found.contacts, *found.bells), (*exact.contacts, *exact.bells), strict=True):
+            np.testing.assert_allclose(one, other, rtol=1e-11, atol=1e-14 * np.abs(other).max(initial=0.0))
+
+
 @pytest.mark.parametrize("overlapping", [False, True])
 @pytest.mark.parametrize("seed", range(6))
 def test_unstable_modes_are_counted(seed: int, overlapping: bool) -> None:

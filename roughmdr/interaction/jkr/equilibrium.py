@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roughmdr.interaction.coupling import add_moments, field_of
-from roughmdr.interaction.dense import Dense
+from roughmdr.interaction.dense import Beside, Dense
 from roughmdr.interaction.interface import Asperities, CoupledKernels
 from roughmdr.interaction.jkr import coincident
 from roughmdr.interaction.jkr.contacts import Contacts
@@ -18,6 +18,9 @@ from roughmdr.numerics.arguments import Floats
 from roughmdr.numerics.jit import njit
 
 Bools = NDArray[np.bool_]
+
+
+_EACH = ("inside", "t", "load", "outer", "field", "potential", "by_loads", "release", "edge", "gap")
 
 
 class PairProblem(NamedTuple):
@@ -114,11 +117,22 @@ def no_field(problem: PairProblem) -> Floats:
     return np.zeros((5, problem.natural.size))
 
 
-def evaluate(problem: PairProblem, inside: Bools, t: Floats, load: Floats, separation: float, outer: Floats) -> State:
-    """Return the contacts with their residuals."""
-    overlap, coupling = problem.near.at(separation), problem.coupling
+def evaluate(
+    problem: PairProblem,
+    inside: Bools,
+    t: Floats,
+    load: Floats,
+    separation: float,
+    outer: Floats,
+    known: tuple[NDArray[np.int64], "State"] | None = None,
+) -> State:
+    """Return the contacts with their residuals; ``known`` are some, all in contact among them, whose field is known."""
+    overlap = problem.near.at(separation)
+    coupling: Dense | Beside = problem.coupling if known is None else problem.coupling.beside(known[0])
     pairs, order = overlap.pairs, problem.order
     field = field_of(coupling, pairs, order, load)
+    if known is not None:
+        field[:, known[0]] = known[1].field
     contacts = Contacts(*np.zeros((len(Contacts._fields), t.size)))
     whole = field + outer[:4]
     problem.kernels.fill(inside, t, load, whole, problem.work, problem.asperities, contacts)
@@ -135,6 +149,8 @@ def evaluate(problem: PairProblem, inside: Bools, t: Floats, load: Floats, separ
     if order == 2:
         moments = 0.25 * contacts.second_moment, contacts.tilting * whole[1], contacts.tilting * whole[2]
         add_moments(coupling, pairs, moments, potential)
+    if known is not None:
+        potential[known[0]], by_loads[known[0]] = known[1].potential, known[1].by_loads
     rows = np.array([edge, edge, problem.asperities.height - separation - potential - outer[0]])
     error = _compare(inside, problem.kernels.pinned, problem.work, contacts, problem.natural, rows)
     release, edge, gap = rows
@@ -142,21 +158,30 @@ def evaluate(problem: PairProblem, inside: Bools, t: Floats, load: Floats, separ
     return State(inside, t, load, separation, outer, field, contacts, overlap, found, *totals)
 
 
-def alone(problem: PairProblem, state: State) -> tuple[PairProblem, State]:
-    """Return the problem of the asperities in contact, without all others, and their state."""
-    kept = np.flatnonzero(state.inside)
-    t, load, outer = state.t[kept], state.load[kept], state.outer[:, kept]
-    few = problem.part(kept)
-    whole = evaluate(few, np.ones(kept.size, np.bool_), t, load, state.separation, outer)
-    return few, whole._replace(factors=state.factors)
-
-
 def among(problem: PairProblem, kept: NDArray[np.int64], few: State, outer: Floats | None = None) -> State:
     """Return the state of all asperities of a problem, of which ``kept`` are as in ``few`` and no other in contact."""
     outer = no_field(problem) if outer is None else outer
     inside, (t, load) = np.zeros(outer.shape[1], np.bool_), np.zeros((2, outer.shape[1]))
     inside[kept], t[kept], load[kept] = few.inside, few.t, few.load
-    return evaluate(problem, inside, t, load, few.separation, outer)._replace(factors=few.factors)
+    return evaluate(problem, inside, t, load, few.separation, outer, (kept, few))._replace(factors=few.factors)
+
+
+def part_of(few: PairProblem, kept: NDArray[np.int64], state: State) -> State:
+    """Return the state of some asperities, all that are in contact among them; ``among`` undoes it."""
+    overlap, contacts = few.near.at(state.separation), Contacts(*(each[kept] for each in state.contacts))
+    return state._replace(
+        contacts=contacts,
+        overlap=overlap,
+        bells=coincident.bells(overlap.pairs, contacts.radius),
+        **{name: getattr(state, name)[..., kept] for name in _EACH},
+    )
+
+
+def alone(problem: PairProblem, state: State) -> tuple[PairProblem, State]:
+    """Return the problem of the asperities in contact, without all others, and their state."""
+    kept = np.flatnonzero(state.inside)
+    few = problem.part(kept)
+    return few, part_of(few, kept, state)
 
 
 def interpolated(

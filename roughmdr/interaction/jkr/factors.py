@@ -19,6 +19,7 @@ from roughmdr.numerics.arguments import Floats
 from roughmdr.numerics.jit import njit
 
 _ITERATIONS = 5
+_BLOCK = 64  # number of columns that LAPACK factors at a time; with the least work space it takes three times as long
 
 
 class Lead(NamedTuple):
@@ -138,7 +139,7 @@ class Factors:
                 near.by_load.T @ np.linalg.solve(near.own, near.by_load) / math.pi
             )
             negative += np.count_nonzero(np.linalg.eigvalsh(near.own) < 0.0)
-        factored, pivots, _ = dsytrf(loads.T, lower=True, overwrite_a=True)
+        factored, pivots, _ = dsytrf(loads.T, lower=True, lwork=_BLOCK * own.size, overwrite_a=True)
         below = np.count_nonzero(np.diag(factored)[pivots > 0] < 0.0)
         count = int(negative - below - np.count_nonzero(pivots < 0) // 2)  # of each double pivot one is negative
         return count if count % 2 == odd else abs(count - 1)
@@ -174,7 +175,7 @@ class Factors:
         """Return the changes of the loads by which de/da changes so, with all radii as they are."""
         load, near = edge / self._by_load, self._pairs
         if near.members.size:
-            load[near.members] = np.linalg.solve(near.by_load, edge[near.members])
+            load[near.members] = near.held @ edge[near.members]
         return load
 
     def _loads(self, radius: Floats, given: Floats) -> Floats:
@@ -228,7 +229,9 @@ class _Overlapping:
         self.own[j, i] += between
         self.by_load = np.diag(state.contacts.edge_by_load[self.members]) + math.pi * self.cross.T
         """de/da by loads."""
-        self.ratio = np.linalg.solve(self.by_load, self.own)
+        self.held = np.linalg.inv(self.by_load)
+        """Loads by de/da, with all radii as they are."""
+        self.ratio = self.held @ self.own
 
 
 def edge_by_radius(state: State) -> Floats:

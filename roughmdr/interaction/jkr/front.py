@@ -15,7 +15,7 @@ from roughmdr.interaction.green import below_all
 from roughmdr.interaction.interface import Asperities, CoupledKernels
 from roughmdr.interaction.jkr import coincident, contacts, lone
 from roughmdr.interaction.jkr.branch import NoEquilibriumError
-from roughmdr.interaction.jkr.equilibrium import Drive, PairProblem, State, among, evaluate, no_field
+from roughmdr.interaction.jkr.equilibrium import Drive, PairProblem, State, among, evaluate, no_field, part_of
 from roughmdr.interaction.jkr.events import Event, advance
 from roughmdr.interaction.jkr.jumps import Avalanche, avalanche
 from roughmdr.interaction.jkr.lone import Surface
@@ -134,8 +134,7 @@ class Front(Placed):
             near = state.gap + max(state.separation - h, 0.0) > -margin
             self._look_at(np.flatnonzero(near | state.inside))
             few, kept, pieces = self.window, self.near_contact, list[Piece]()
-            part = evaluate(few, state.inside[kept], state.t[kept], state.load[kept], state.separation, no_field(few))
-            part, event = part._replace(factors=state.factors), None
+            part, event = part_of(few, kept, state), None
             while not pieces or event is not None:
                 end, event = advance(few, part, Drive(h - part.separation, no_field(few)))
                 rest, one = (end, None) if event is None else avalanche(few, end, event)

@@ -67,12 +67,7 @@ def avalanche(problem: PairProblem, state: State, event: Event) -> tuple[State, 
             raise NoEquilibriumError
         state, size = jump(problem, state, next_event), size + 1
         state, next_event = advance(problem, state, Drive(0.0, -state.outer))
-    rest = at_rest(
-        problem,
-        evaluate(problem, state.inside, state.t, state.load, state.separation, np.zeros_like(state.outer))._replace(
-            factors=state.factors
-        ),
-    )
+    rest = at_rest(problem, state)
     if not np.isfinite(rest.error):
         raise NoEquilibriumError
     return rest, Avalanche(rest.separation, size, before - energy(problem, rest))

@@ -7,7 +7,7 @@ import math
 
 import numpy as np
 
-from roughmdr.interaction.jkr.equilibrium import Drive, PairProblem, State, Step, alone, among, moved
+from roughmdr.interaction.jkr.equilibrium import Drive, PairProblem, State, Step, alone, among, evaluate, moved
 from roughmdr.interaction.jkr.factors import Factors, Lead
 from roughmdr.interaction.jkr.tangent import Mixing, leading
 
@@ -74,8 +74,9 @@ def newton(
 
 
 def at_rest(problem: PairProblem, state: State) -> State:
-    """Return asperities with their contacts in equilibrium at the separation of a guess; its error inf if not found."""
+    """Return asperities with their contacts in equilibrium without an outer field; the error is inf if not found."""
     few, guess = alone(problem, state)
-    rest, _ = newton(few, guess, Drive(0.0, np.zeros_like(guess.outer)), guess.factors)
-    rest = rest._replace(factors=guess.factors)
-    return among(problem, np.flatnonzero(state.inside), rest, state.outer)._replace(error=rest.error)
+    nothing = np.zeros_like(guess.outer)
+    begin = evaluate(few, guess.inside, guess.t, guess.load, guess.separation, nothing)
+    rest, _ = newton(few, begin, Drive(0.0, nothing), guess.factors)
+    return among(problem, np.flatnonzero(state.inside), rest._replace(factors=guess.factors))
