@@ -13,10 +13,8 @@ Moments = tuple[Floats, Floats, Floats]
 """Sources of the Laplacian of G, and of its slopes along x and along y."""
 
 
-class Coupling(Protocol):
-    """How loads displace the surface at each asperity; ``Dense`` and ``Mesh``."""
-
-    error: float
+class Sums(Protocol):
+    """Sums over loads at each asperity, or at some of them."""
 
     def potential(self, load: Floats) -> Floats:
         """Return the displacement by point loads."""
@@ -30,12 +28,18 @@ class Coupling(Protocol):
         """Return the displacement by sources of the Laplacian and of the slopes of G."""
         ...
 
+
+class Coupling(Sums, Protocol):
+    """How loads displace the surface at each asperity; ``Dense`` and ``Mesh``."""
+
+    error: float
+
     def least_displacement(self, load: Floats) -> float:
         """Return about the least displacement between the points."""
         ...
 
 
-def field_of(coupling: Coupling, pairs: close.Pairs, order: int, load: Floats) -> Floats:
+def field_of(coupling: Sums, pairs: close.Pairs, order: int, load: Floats) -> Floats:
     """Return the displacement by point loads with its derivatives, [row, asperity], but for close pairs.
 
     To first order the derivatives are 0.
@@ -50,7 +54,7 @@ def field_of(coupling: Coupling, pairs: close.Pairs, order: int, load: Floats) -
     return field
 
 
-def add_moments(coupling: Coupling, pairs: close.Pairs, moments: Moments, displacement: Floats) -> None:
+def add_moments(coupling: Sums, pairs: close.Pairs, moments: Moments, displacement: Floats) -> None:
     """Add the displacement by moments, but for close pairs."""
     displacement += coupling.of_moments(*moments)
     if pairs.share.size:

@@ -96,8 +96,6 @@ class Dense:
 class Beside:
     """Matrices as they displace some of the points; for the others there are 0."""
 
-    error = 0.0
-
     def __init__(self, matrices: Floats, known: NDArray[np.int64]) -> None:
         self._matrices = matrices
         self._points = np.delete(np.arange(matrices.shape[1]), known)

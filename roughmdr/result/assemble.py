@@ -21,6 +21,7 @@ from roughmdr.result.accuracy import reached
 from roughmdr.result.model_errors import errors_along
 from roughmdr.result.pull_off import pull_off_numbers
 from roughmdr.result.view import ResultView
+from roughmdr.schema.wording import merged
 from roughmdr.storage.labelled import Array, Labelled
 from roughmdr.storage.result_file import provenance
 from roughmdr.variables import (
@@ -149,7 +150,7 @@ def _warnings(plan: Plan, diagnostics: dict[str, NDArray[Any]]) -> list[str]:
     done = diagnostics["status"] == DONE
     diagnostics = {name: column[done] for name, column in diagnostics.items()}
     remarks = [line for text in diagnostics["remark"] for line in text.split("\n") if line]
-    warnings = [*plan.warnings, *dict.fromkeys(remarks)]
+    warnings = [*plan.warnings, *merged(remarks)]
     if not done.any():
         return warnings
     jkr = diagnostics["adhesion_law"] == ADHESION_CODES.index("jkr")

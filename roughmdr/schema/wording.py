@@ -1,10 +1,12 @@
 """Parts of messages: values as a scene gives them, names that may have been meant, sizes and times with units."""
 
+import re
 from collections import Counter
 from collections.abc import Iterable, Iterator
 
 _MIN_SIMILARITY = 0.7  # least ratio of difflib: one or two letters of a word differ
 _LAYOUT = "\n\t"
+_NUMBER = re.compile(r"\d[\d.]*(e[+-]?\d+)?")
 
 
 def close_matches(given: str, allowed: Iterable[str], count: int = 1) -> list[str]:
@@ -48,6 +50,16 @@ def count_by_cell(lines: Iterable[str], cells: int) -> list[str]:
     """Return each line once, with the number of cells of a sweep that it applies to unless it applies to all."""
     return [
         line if count == cells else f"{line} (in {count} of {cells} cells)" for line, count in Counter(lines).items()
+    ]
+
+
+def merged(lines: Iterable[str]) -> list[str]:
+    """Return the first of all lines that differ in numbers only, with the number of others."""
+    alike: dict[str, list[str]] = {}
+    for line in dict.fromkeys(lines):
+        alike.setdefault(_NUMBER.sub("", line), []).append(line)
+    return [
+        f"{first} ({len(others)} more with other numbers)" if others else first for first, *others in alike.values()
     ]
 
 

@@ -91,7 +91,17 @@ def test_contacts_that_overlap_as_soon_as_they_are_made_are_told() -> None:
             ensemble, separation=[1e-6, 0.0], effective_modulus=modulus, work=0.05, interaction="pairwise"
         )
     told = [str(one.message) for one in caught]
-    assert any("(1 pairs): jump-on radius 5.84 um, distance 11 um" in line for line in told), told
+    assert any("(pairs: 1): jump-on radius 5.84 um, distance 11 um" in line for line in told), told
+
+
+def test_warnings_that_differ_in_numbers_are_one_line() -> None:
+    near = {**{key: value for key, value in FEW.items() if key != "min_distance"}, "placement": "random"}
+    near |= {"patch": "60 um", "count": 10}
+    path = {"separation": {"start": "1.5 um", "stop": "0.3 um", "steps": 3}}
+    result = rm.run(sticky(3, asperities=near, path=path, output={"variables": ["force"]}))
+    told = [line for line in result.attrs["warnings"].splitlines() if "as soon as" in line]
+    assert len(told) == 1
+    assert told[0].endswith("(2 more with other numbers)")
 
 
 @pytest.mark.large

@@ -320,3 +320,21 @@ def test_events_depend_neither_on_the_steps_nor_on_the_order_of_asperities() -> 
     for one, other in zip(few.avalanches, many.avalanches, strict=True):
         assert abs(one.separation - other.separation) < 1e-12 * UNIT.d0
         assert one.dissipated == pytest.approx(other.dissipated, rel=1e-9)
+
+
+@pytest.mark.large
+def test_a_path_of_a_large_patch_is_lost_at_no_fold() -> None:
+    """In an avalanche the tangent of the first order takes another contact for the one that folds."""
+    rng, count, pitch = np.random.default_rng(0), 3969, 1e-3 * math.sqrt(4000 / 2000) / 63
+    x, y = np.meshgrid(np.arange(63), np.arange(63))
+    x, y = ((each.ravel() + 0.5 + rng.uniform(-0.25, 0.25, count)) * pitch for each in (x, y))
+    z, radius = rng.normal(0.0, 1e-6, count), 50e-6 * rng.lognormal(0.0, 0.1, count)
+    order = np.argsort(-z)
+    at = {"x": x[order], "y": y[order]}
+    ensemble = Ensemble("paraboloid", z[order], {"radius": radius[order]}, positions=at, nominal_area=(63 * pitch) ** 2)
+    way = np.linspace(4.5e-6, 1.25e-6, 12)
+    descent = Descent(ensemble, 3e6 / (1.0 - 0.49**2), 0.05, Interaction(model="pairwise"))
+    found = descent.along(np.concatenate([way, way[::-1]]), set())
+    assert np.isfinite([step.error for step in found.steps]).all()
+    assert sum(each.size for each in found.avalanches) >= 2 * max(step.contacts for step in found.steps)
+    assert found.steps[-1].contacts == 0

@@ -184,6 +184,6 @@ class Account:
         radius, apart = (format_quantity(length * float(np.median(each)), "m") for each in
                          (made[pairs.members[overlapping]], pairs.apart[overlapping, 2]))  # fmt: skip
         return (
-            f"contacts overlap as soon as they are made ({count} pairs): jump-on radius {radius}, distance {apart} in "
+            f"contacts overlap as soon as they are made (pairs: {count}): jump-on radius {radius}, distance {apart} in "
             "the median; how contacts merge is not in their coupling"
         )

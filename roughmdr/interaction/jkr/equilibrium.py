@@ -9,8 +9,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from roughmdr.interaction.coupling import add_moments, field_of
-from roughmdr.interaction.dense import Beside, Dense
+from roughmdr.interaction.coupling import Sums, add_moments, field_of
+from roughmdr.interaction.dense import Dense
 from roughmdr.interaction.interface import Asperities, CoupledKernels
 from roughmdr.interaction.jkr import coincident
 from roughmdr.interaction.jkr.contacts import Contacts
@@ -128,7 +128,7 @@ def evaluate(
 ) -> State:
     """Return the contacts with their residuals; ``known`` are some, all in contact among them, whose field is known."""
     overlap = problem.near.at(separation)
-    coupling: Dense | Beside = problem.coupling if known is None else problem.coupling.beside(known[0])
+    coupling: Sums = problem.coupling if known is None else problem.coupling.beside(known[0])
     pairs, order = overlap.pairs, problem.order
     field = field_of(coupling, pairs, order, load)
     if known is not None:
