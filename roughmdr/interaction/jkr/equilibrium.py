@@ -19,8 +19,8 @@ from roughmdr.numerics.jit import njit
 
 Bools = NDArray[np.bool_]
 
-
 _EACH = ("inside", "t", "load", "outer", "field", "potential", "by_loads", "release", "edge", "gap")
+"""Names of arrays over the asperities in a ``State``, beside its contacts."""
 
 
 class PairProblem(NamedTuple):

@@ -79,4 +79,5 @@ def at_rest(problem: PairProblem, state: State) -> State:
     nothing = np.zeros_like(guess.outer)
     begin = evaluate(few, guess.inside, guess.t, guess.load, guess.separation, nothing)
     rest, _ = newton(few, begin, Drive(0.0, nothing), guess.factors)
-    return among(problem, np.flatnonzero(state.inside), rest._replace(factors=guess.factors))
+    whole = among(problem, np.flatnonzero(state.inside), rest)
+    return whole._replace(error=rest.error, factors=guess.factors)
