@@ -20,6 +20,7 @@ from roughmdr.interaction.jkr.equilibrium import Drive, PairProblem, State, Step
 from roughmdr.interaction.jkr.factors import Factors
 from roughmdr.interaction.jkr.front import jkr_kernels
 from roughmdr.interaction.jkr.lone import Surface
+from roughmdr.interaction.jkr.newton import at_rest
 from roughmdr.interaction.jkr.tangent import Mixing, Tangent
 from roughmdr.kernels.adhesion import Adhesion
 from roughmdr.kernels.choose import choose
@@ -136,6 +137,14 @@ def test_what_is_known_of_some_is_not_found_again(name: str, overlapping: bool, 
             np.testing.assert_allclose(getattr(found, field), getattr(exact, field), rtol=1e-12, atol=1e-14 * scale)
         for one, other in zip((*found.contacts, *found.bells), (*exact.contacts, *exact.bells), strict=True):
             np.testing.assert_allclose(one, other, rtol=1e-11, atol=1e-14 * np.abs(other).max(initial=0.0))
+
+
+@pytest.mark.parametrize(("separation", "found"), [(-1e-6, True), (1e-3, False)])
+def test_contacts_far_below_the_flat_find_no_rest(separation: float, found: bool) -> None:
+    problem, state = guess(EXAMPLES["paraboloid"], AT, 2)
+    begin = evaluate(problem, state.inside, state.t, state.load, separation, state.outer)
+    assert math.isfinite(begin.error)
+    assert math.isfinite(at_rest(problem, begin).error) == found
 
 
 @pytest.mark.parametrize("overlapping", [False, True])

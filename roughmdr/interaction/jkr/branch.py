@@ -84,7 +84,7 @@ def piece(problem: PairProblem, here: Place, drive: Drive) -> tuple[Place, Fold 
         if there := _stable(problem, here, new, 1.0):
             corner = _at_corner(new) if problem.kernels.flat else None
             return there, corner
-    whole = tangent.rate(factors, _SIGN_RTOL)  # near a fold another contact may be the fastest with it
+    whole = tangent.solve(-edge, -gap, factors, _SIGN_RTOL)  # near a fold another contact may be the fastest with it
     rate = whole if np.isfinite(whole.radius).all() else rate
     lead = int(np.argmax(_speeds(state, rate)))
     slope = abs(1.0 / rate.radius[lead])

@@ -175,7 +175,7 @@ class Factors:
         """Return the changes of the loads by which de/da changes so, with all radii as they are."""
         load, near = edge / self._by_load, self._pairs
         if near.members.size:
-            load[near.members] = near.held @ edge[near.members]
+            load[near.members] = near.load_by_edge @ edge[near.members]
         return load
 
     def _loads(self, radius: Floats, given: Floats) -> Floats:
@@ -229,9 +229,9 @@ class _Overlapping:
         self.own[j, i] += between
         self.by_load = np.diag(state.contacts.edge_by_load[self.members]) + math.pi * self.cross.T
         """de/da by loads."""
-        self.held = np.linalg.inv(self.by_load)
-        """Loads by de/da, with all radii as they are."""
-        self.ratio = self.held @ self.own
+        self.load_by_edge = np.linalg.inv(self.by_load)
+        """Loads by de/da, at the radii as they are."""
+        self.ratio = self.load_by_edge @ self.own
 
 
 def edge_by_radius(state: State) -> Floats:
