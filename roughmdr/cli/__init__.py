@@ -10,6 +10,7 @@ from roughmdr.cli.export import export
 from roughmdr.cli.fit import fit
 from roughmdr.cli.generate import generate
 from roughmdr.cli.info import info
+from roughmdr.cli.join import join
 from roughmdr.cli.new import new
 from roughmdr.cli.plan import plan
 from roughmdr.cli.plot import plot
@@ -29,5 +30,5 @@ def main() -> None:
     """
 
 
-for command in (cite, export, fit, generate, info, new, plan, plot, report, run, schema, warm):
+for command in (cite, export, fit, generate, info, join, new, plan, plot, report, run, schema, warm):
     main.add_command(command)

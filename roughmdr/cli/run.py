@@ -1,4 +1,4 @@
-"""roughmdr run: compute the law of a scene."""
+"""roughmdr run: compute the law of a scene, or a part of its runs."""
 
 import sys
 import time
@@ -13,8 +13,10 @@ from roughmdr.cli.terminal import INCOMPLETE, Command, print_document, print_tex
 from roughmdr.errors import RoughmdrError
 
 if TYPE_CHECKING:
+    from roughmdr.batch.resume.share import Share
     from roughmdr.runner.backend import Backend
     from roughmdr.runner.cluster import Tls
+    from roughmdr.storage.labelled import Labelled
 
 
 @click.command(cls=Command)
@@ -38,13 +40,21 @@ if TYPE_CHECKING:
     show_default=True,
     help="Reuse what the output or an interrupted run already contains, or start anew.",
 )
+@click.option("--part", metavar="NUMBER/COUNT", help="Compute this part of the runs only; see roughmdr join.")
 @click.option("--derivatives", default="", metavar="KEYS", help="Numbers of the scene to differentiate the law by.")
 @click.option("--quiet", is_flag=True, help="Print nothing but errors.")
 @click.option("--verbose", is_flag=True, help="Also print what was left out, and why.")
 @json_option
 @click.pass_context
 def run(
-    ctx: click.Context, /, scene: Path, output: Path, changes: tuple[str, ...], resume: bool, **others: Any
+    ctx: click.Context,
+    /,
+    scene: Path,
+    output: Path,
+    changes: tuple[str, ...],
+    resume: bool,
+    part: str | None,
+    **others: Any,
 ) -> None:
     """Compute the load-separation law of SCENE.
 
@@ -57,19 +67,62 @@ def run(
     if quiet and verbose:
         raise click.UsageError("--quiet and --verbose exclude each other")
     with without_garbage_collection():
-        from roughmdr.report.summary import describe_failed, describe_result
         from roughmdr.scene import read
 
+        share = None if part is None else _share(part)
         if keys := [key.strip() for key in others.pop("derivatives").split(",") if key.strip()]:
             changes = (*changes, f"output.derivatives={keys}")
         validated = read(scene, changes)  # before anything heavy is imported
         from roughmdr.batch.choose import plan_scene
-        from roughmdr.result.view import ResultView
         from roughmdr.runner.run import execute
 
         planned = plan_scene(validated)
-    silent = quiet or as_json
-    done = execute(planned, output, _backend(**others), resume=resume, quiet=silent, command=command_line())
+    options = {"resume": resume, "quiet": quiet or as_json, "command": command_line()}
+    if share is not None:
+        from roughmdr.runner.shares import compute_share
+
+        compute_share(planned, output, share, backend(**others), **options)
+        _print_share(ctx, share.folder(output), quiet=quiet, as_json=as_json)
+        return
+    done = execute(planned, output, backend(**others), **options)
+    print_done(ctx, done, output, started, quiet=quiet, verbose=verbose, as_json=as_json)
+
+
+def _share(text: str) -> "Share":
+    from roughmdr.batch.resume.share import Share
+
+    return Share.parse(text)
+
+
+def _print_share(ctx: click.Context, folder: Path, *, quiet: bool, as_json: bool) -> None:
+    """Tell what is kept of a part of the runs; exit with status 1 if runs failed."""
+    from roughmdr.batch.resume.kept import read_kept
+    from roughmdr.report.parts import describe_parts, parts_table
+
+    kept = read_kept(folder) if folder.is_dir() else None
+    failed = kept is not None and bool(kept.failed)
+    if as_json:
+        print_document(ctx, INCOMPLETE if failed else 0, parts=kept and parts_table(kept))
+    elif not quiet:
+        print_text("kept         nothing: there are fewer runs than parts" if kept is None else describe_parts(kept))
+    if failed:
+        sys.exit(INCOMPLETE)
+
+
+def print_done(
+    ctx: click.Context,
+    done: "Labelled",
+    output: Path,
+    started: float,
+    *,
+    quiet: bool,
+    as_json: bool,
+    verbose: bool = False,
+) -> None:
+    """Tell what a result holds; exit with status 1 if runs failed."""
+    from roughmdr.report.summary import describe_failed, describe_result
+    from roughmdr.result.view import ResultView
+
     result = ResultView(done)
     elapsed, failed = time.perf_counter() - started, describe_failed(result)
     if as_json:
@@ -87,7 +140,8 @@ def run(
         sys.exit(INCOMPLETE)
 
 
-def _backend(workers: int, scheduler: str, **tls_files: Path | None) -> "Backend":
+def backend(workers: int, scheduler: str, **tls_files: Path | None) -> "Backend":
+    """Return where runs are computed, from the options of the command."""
     from roughmdr.runner.backend import Backend
 
     return Backend(scheduler, workers, _tls(**tls_files))

@@ -178,6 +178,7 @@ class PartsTable(TypedDict):
     title: str | None
     folder: str
     output: str
+    part: str | None  # such as 7/100; null where all of the batch is computed here
     done: int  # runs that are kept
     total: int | None  # null where it is not known, as with [accuracy]
     failed: int  # runs, which are repeated

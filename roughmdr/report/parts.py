@@ -1,5 +1,7 @@
 """The text and the table of ``roughmdr info OUT.nc.parts``: how far a batch is that is not over."""
 
+import shlex
+
 from roughmdr.batch.resume.kept import Kept, Progress, progress_of
 from roughmdr.report.documents import PartCellTable, PartsTable
 from roughmdr.report.result_document import swept_table
@@ -9,18 +11,23 @@ from roughmdr.schema.wording import format_table, printable
 _MAX_CELLS = 30
 
 
-def describe_parts(kept: Kept, *, cells: bool) -> str:
+def describe_parts(kept: Kept, *, cells: bool = False) -> str:
     """Return how many runs are done, of which cells, and what goes on from there; of all ``cells``, or of the first."""
     progress = progress_of(kept)
-    lines = [("kept", _counted(kept, progress))]
+    lines = [] if kept.share is None else [("part", "{} of {}".format(*kept.share))]
+    lines += [("kept", _counted(kept, progress))]
     lines += _cells(kept, progress, len(progress.done) if cells else _MAX_CELLS)
     if kept.failed:
         reason = printable(kept.remark.partition("\n")[0])
         lines.append(("failed", f"{len(kept.failed)} runs ({reason}); the next batch repeats them"))
     if kept.began:
         lines.append(("begun", f"{kept.began}; something was kept last at {kept.last}"))
-    lines.append(("at work", _at_work(kept)))
-    lines.append(("goes on by", printable(kept.continued_by)))
+    done = kept.share is not None and kept.runs == progress.total
+    lines.append(("at work", "no run: this part is done" if done and kept.holder is None else _at_work(kept)))
+    if done:
+        lines.append(("when all are", printable(f"roughmdr join {shlex.quote(str(kept.output))}")))
+    else:
+        lines.append(("goes on by", printable(kept.continued_by)))
     return format_table(lines)
 
 
@@ -32,6 +39,7 @@ def parts_table(kept: Kept) -> PartsTable:
         "title": None if scene is None else scene.title,
         "folder": str(kept.folder),
         "output": str(kept.output),
+        "part": None if kept.share is None else "{}/{}".format(*kept.share),
         "done": kept.runs,
         "total": progress.total,
         "failed": len(kept.failed),
@@ -74,7 +82,7 @@ def _cells(kept: Kept, progress: Progress, most: int) -> list[tuple[str, str]]:
         return [("cells", f"not told: {reason}")] if kept.scene else []
     if not progress.plan.sizes:
         return []
-    of = f" of {progress.realizations}" if progress.total is not None else ""
+    of = f" of {progress.realizations}" if progress.total is not None and progress.realizations is not None else ""
     lines = []
     for number, values in enumerate(progress.plan.scene.sweep.cells()):
         if number == most:

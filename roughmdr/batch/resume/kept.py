@@ -12,6 +12,7 @@ from typing import NamedTuple
 
 from roughmdr.batch.plan import Plan, make_plan
 from roughmdr.batch.resume.keys import versions
+from roughmdr.batch.resume.share import Share
 from roughmdr.batch.resume.store import LOCK, MANIFEST, manifest_lines
 from roughmdr.batch.rounds import Rounds
 from roughmdr.errors import RoughmdrError, StoreError
@@ -52,7 +53,16 @@ class Kept(NamedTuple):
     @property
     def output(self) -> Path:
         """The result that the runs belong to."""
-        return self.folder.with_name(self.folder.name.removesuffix(_ENDING))
+        return self._target[0]
+
+    @property
+    def share(self) -> Share | None:
+        """The share of the batch that is computed here; None for all of it."""
+        return self._target[1]
+
+    @property
+    def _target(self) -> tuple[Path, Share | None]:
+        return Share.split_name(self.folder.with_name(self.folder.name.removesuffix(_ENDING)))
 
     @property
     def continued_by(self) -> str:
@@ -70,7 +80,7 @@ class Progress(NamedTuple):
 
     scene: Scene | None  # None where it cannot be read here, for lack of a file for example
     plan: Plan | None  # None likewise, or where other versions began the batch
-    realizations: int | None  # of a cell; with [accuracy] those of its first round
+    realizations: int | None  # of a cell; with [accuracy] those of its first round; None for a share
     done: list[int]  # of each cell of the plan
     failed: list[int]
     total: int | None  # runs to be computed; None where that is not known, as with [accuracy]
@@ -123,14 +133,18 @@ def progress_of(kept: Kept) -> Progress:
         return Progress(None, None, None, [], [], None)
     realizations = 1 if scene.batch.estimator == "expected" else scene.batch.realizations
     if plan is None or kept.by_key is None:
-        total = None if scene.accuracy else realizations * len(scene.cells)
+        total = None if scene.accuracy or kept.share else realizations * len(scene.cells)
         return Progress(scene, None, realizations, [], [], total)
-    keys, by_key = Rounds(plan).keys, kept.by_key
+    rounds, by_key = Rounds(plan), kept.by_key
+    keys = rounds.keys
     failures = Counter(key for key, _ in kept.failed)
     done = [sum(by_key[key] for key in of_cell) for of_cell in keys]
     failed = [sum(failures[key] for key in of_cell) for of_cell in keys]
     if scene.accuracy is not None:
         return Progress(scene, plan, realizations, done, failed, None)
+    if kept.share is not None:
+        total = sum(runs.last - runs.first for runs in kept.share.of(rounds.begin()))
+        return Progress(scene, plan, None, done, failed, total)
     failed = [min(some, realizations - count) for some, count in zip(failed, done, strict=True)]
     distinct = len({frozenset(of_cell) for of_cell in keys})  # equal cells are computed once
     return Progress(scene, plan, realizations, done, failed, realizations * distinct)

@@ -1,0 +1,32 @@
+"""roughmdr join: put the parts of a batch together."""
+
+import time
+from pathlib import Path
+from typing import Any
+
+import click
+
+from roughmdr.cli.invocation import command_line, without_garbage_collection
+from roughmdr.cli.options import OUTPUT, json_option, workers_option
+from roughmdr.cli.run import backend, print_done
+from roughmdr.cli.terminal import Command
+
+
+@click.command(cls=Command)
+@click.argument("output", type=OUTPUT)
+@workers_option
+@click.option("--quiet", is_flag=True, help="Print nothing but errors.")
+@json_option
+@click.pass_context
+def join(ctx: click.Context, /, output: Path, workers: int, **silent: Any) -> None:
+    """Write OUTPUT from the parts that "roughmdr run ... -o OUTPUT --part NUMBER/COUNT" has kept beside it.
+
+    Names the parts that are missing or not done. Runs that failed are tried again. The numbers are those of one run of
+    the whole batch, to the last bit.
+    """
+    started = time.perf_counter()
+    with without_garbage_collection():
+        from roughmdr.runner.shares import join as joined
+    quiet = silent["quiet"] or silent["as_json"]
+    done = joined(output, backend(workers, "threads"), quiet=quiet, command=command_line())
+    print_done(ctx, done, output, started, **silent)

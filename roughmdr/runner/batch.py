@@ -1,0 +1,205 @@
+"""A plan while it is carried out: round after round of tasks, stored as they finish, assembled at the end."""
+
+import threading
+from collections.abc import Iterator, Sequence
+from contextlib import ExitStack, contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+
+from roughmdr.batch.collect import Collector
+from roughmdr.batch.costs import ensemble_bytes, result_bytes
+from roughmdr.batch.foresee import check_foreseen
+from roughmdr.batch.plan import Plan
+from roughmdr.batch.resume.find import check_no_less, find_previous, is_finished, reuse
+from roughmdr.batch.resume.reusable import ReusableRows
+from roughmdr.batch.resume.share import Share
+from roughmdr.batch.resume.writer import CheckpointWriter
+from roughmdr.batch.rounds import Rounds
+from roughmdr.batch.task_result import TaskResult
+from roughmdr.batch.tasks import RunRange, first_error, prepare_all, split_into_tasks
+from roughmdr.errors import RoughmdrError, StoreError, Unfinished
+from roughmdr.numerics.compiling import compiling
+from roughmdr.result.assemble import assemble
+from roughmdr.runner.backend import Backend
+from roughmdr.runner.cluster import Cluster
+from roughmdr.runner.local import Pool, Serial, Sink, Threads
+from roughmdr.runner.progress import Progress, progress, tell_compiling
+from roughmdr.runner.signals import Interrupted, interruptible
+from roughmdr.storage.files import NETCDF_ENDINGS, check_ending, check_writable, destination
+from roughmdr.storage.labelled import Labelled
+from roughmdr.storage.memory import check_memory, describe_available_memory
+from roughmdr.variables import FAILED
+
+_FORCE = "force"
+
+
+class Beginning(NamedTuple):
+    """The begin of a batch: the folder that its output has to itself, and all that earlier runs have left."""
+
+    plan: Plan
+    rounds: Rounds
+    writer: CheckpointWriter
+    reusable: ReusableRows
+    old: Labelled | None
+    """The result that is at the output."""
+    finished: bool
+    """Whether that is just what is asked for."""
+
+    def missing(self, ranges: Sequence[RunRange], selected: list[tuple[int, int]]) -> list[RunRange]:
+        """Return the runs that earlier ones have not left; append the rows of the others to ``selected``."""
+        return [
+            runs._replace(first=first, last=last)
+            for runs in ranges
+            for first, last in self.reusable.select(runs.key, runs.first, runs.last, selected)
+        ]
+
+
+@contextmanager
+def begun(plan: Plan, target: Path | None, share: Share | None = None, *, resume: bool) -> Iterator[Beginning]:
+    """Begin the batch of a plan, or a ``share`` of it beside the target.
+
+    StoreError for a bad target, or where there are results that cannot be reused.
+    """
+    if target is not None:
+        check_writable(target, plan.scene.inputs)
+        check_ending(target, "result", NETCDF_ENDINGS)
+        target = destination(target) if share is None else share.beside(destination(target))
+    rounds = Rounds(plan)
+    with ExitStack() as stack:
+        writer = CheckpointWriter(target, stack)
+        reusable = ReusableRows(rounds.keys, computed_variables(plan), keep_moments=plan.keeps_statistics)
+        old: Labelled | None = None
+        finished = False
+        if target is not None and resume:
+            old = None if writer.may_replace(plan.scene.toml) else find_previous(target)
+            finished = old is not None and is_finished(old, plan, rounds.keys)
+            if not finished:
+                reuse(target, old, writer.store, plan, reusable)
+            elif old is not None and writer.store is not None and writer.store.scene in ("", old.attrs["scene"]):
+                writer.store.clear()  # the run that wrote the result was killed before it could
+        yield Beginning(plan, rounds, writer, reusable, old, finished)
+
+
+@contextmanager
+def at_work(
+    beginning: Beginning, backend: Backend, command: str, *, resume: bool, quiet: bool, assembled: bool = True
+) -> Iterator["Batch"]:
+    """Open the pool that computes a batch, whose result is ``assembled``, or a part of it; ``command`` goes into the
+    file's history.
+
+    StoreError, before computing, for too little memory; Unfinished where the batch cannot go on.
+    """
+    plan, writer = beginning.plan, beginning.writer
+    with compiling(lambda: tell_compiling(plan.scene.title, quiet=quiet)):
+        check_foreseen(plan)
+        runs = sum(method.realizations for method in beginning.rounds.methods)  # of the first round
+        if assembled:
+            remedy = "fewer steps or realizations, or output.keep = 'statistics', take less"
+            check_memory(result_bytes(plan, runs), "the run", remedy)
+        if backend.is_local:
+            asperities = min(backend.workers, runs) * ensemble_bytes(plan)
+            check_memory(asperities, "the asperities of the runs in progress", "fewer asperities or workers take less")
+        try:
+            with backend.pool() as pool:
+                if not resume:
+                    writer.clear()
+                yield Batch(beginning, pool, backend.runs_per_task, command)
+        except (StoreError, MemoryError) as error:
+            message = str(error) or f"out of memory, with {describe_available_memory()}"
+            if writer.saved_message:
+                raise Unfinished(f"{message}; {writer.saved_message}") from None
+            if isinstance(error, MemoryError):
+                raise Unfinished(message) from None
+            raise
+
+
+def computed_variables(plan: Plan) -> tuple[str, ...]:
+    """Return the variables that are computed: those asked for, and those of an error asked for and of a pull-off."""
+    of_error = [] if plan.scene.accuracy is None else [plan.watched]
+    of_pull_off = [_FORCE] if plan.control == "separation" and plan.unloads else []
+    return tuple(dict.fromkeys([*plan.variables, *of_error, *of_pull_off]))
+
+
+@dataclass
+class Batch:
+    """The runs of a plan, and the pool that computes them."""
+
+    _beginning: Beginning
+    _pool: Pool
+    _runs_per_task: int | None
+    _command: str
+
+    def __post_init__(self) -> None:
+        self._plan, self._rounds, self._writer, self._reusable, self._old, _ = self._beginning
+        plan = self._plan
+        watched = None if plan.scene.accuracy is None else plan.watched
+        self._variables = computed_variables(plan)
+        self._collector = Collector(self._variables, plan.steps, keep_moments=plan.keeps_statistics, watched=watched)
+
+    def run(self, *, quiet: bool) -> Labelled:
+        """Run all rounds; return the result, whose history continues that of the one that it may replace."""
+        with interruptible(lambda: self._writer.begun, self._saved_message) as stop:
+            with progress(self._plan.scene.title, quiet=quiet) as display:
+                ranges = self._rounds.begin()
+                while ranges:
+                    self._round(ranges, display, stop, self._collector.add)
+                    ranges = self._rounds.next(self._collector)
+            return self._finish()
+
+    def keep(self, ranges: Sequence[RunRange], *, quiet: bool) -> None:
+        """Compute some of the runs of the first round, which are kept beside the output."""
+        with interruptible(lambda: self._writer.begun, self._saved_message) as stop:
+            self._writer.begin(self._plan.scene.toml, self._command)
+            with progress(self._plan.scene.title, quiet=quiet) as display:
+                self._round(ranges, display, stop, lambda result: None)
+            self._writer.flush()
+
+    def _finish(self) -> Labelled:
+        """Assemble the result and write it."""
+        methods, none_done = self._rounds.methods, self._collector.none_done
+        cells = [(method.key, method.realizations) for method in methods]
+        collected = self._collector.collected(cells)
+        failed = collected.diagnostics["status"] == FAILED
+        if none_done:
+            error = first_error(str(collected.diagnostics["remark"][failed][0]))
+            name = self._plan.name_of(int(np.argwhere(failed)[0, 0]), 0)
+            raise (type(error) if isinstance(error, RoughmdrError) else Unfinished)(f"{name}: {error}")
+        result = assemble(self._plan, methods, collected, self._variables, self._command)
+        if self._old is not None:
+            result.attrs["history"] += f"\n{self._old.attrs['history']}"
+            check_no_less(self._writer.target, self._old, result, self._rounds.keys)
+        self._writer.finish(result, complete=not (failed.any() or self._reusable.has_unused(cells)))
+        return result
+
+    def _saved_message(self) -> str:
+        return self._writer.saved_message or "nothing was written"
+
+    def _round(self, ranges: Sequence[RunRange], display: Progress, stop: threading.Event, take: Sink) -> None:
+        """Reuse what there is, compute what is missing."""
+        selected: list[tuple[int, int]] = []
+        missing = self._beginning.missing(ranges, selected)
+        for result in self._reusable.read(selected):
+            take(result)
+            display.add(reused=result.realizations)
+        tasks = split_into_tasks(self._plan, missing, self._variables, self._pool.workers, self._runs_per_task)
+        if not tasks:
+            return
+        display.add(total=sum(runs.last - runs.first for runs in missing))
+        if not isinstance(self._pool, Cluster):
+            prepare_all(self._plan, missing)
+        if len(tasks) > 1:
+            self._writer.begin(self._plan.scene.toml, self._command)
+        pool = Serial() if len(tasks) == 1 and isinstance(self._pool, Threads) else self._pool
+
+        def sink(result: TaskResult) -> None:
+            self._writer.put(result)
+            take(result)
+            display.add(done=result.realizations)
+
+        pool.compute(tasks, stop, sink)
+        if stop.is_set():
+            self._writer.flush()
+            raise Interrupted(f"interrupted; {self._saved_message()}")

@@ -1,0 +1,185 @@
+"""Parts of a batch, computed by themselves and joined: the same bits, and words for what is missing."""
+
+import json
+import os
+import random
+import shutil
+import time
+from contextlib import ExitStack
+from pathlib import Path
+from typing import Any
+
+import pytest
+import xarray as xr
+from batches import CURVES, STATISTICS, Batch, assert_clean, assert_result, running, write_scene
+from click.testing import CliRunner, Result
+from forms import large
+from hypothesis import given
+from hypothesis import strategies as st
+from scenes import scene
+
+from roughmdr.batch.plan import make_plan
+from roughmdr.batch.resume.share import Share
+from roughmdr.batch.resume.store import locked_store
+from roughmdr.batch.rounds import Rounds
+from roughmdr.cli import main
+from roughmdr.errors import OutOfRange
+from roughmdr.scene import read
+
+SWEPT = scene(sweep={"material.modulus": [1e9, 2e9, 3e9]}, batch={"realizations": 5})
+
+
+def roughmdr(*arguments: object) -> Result:
+    return CliRunner().invoke(main, [str(each) for each in arguments])
+
+
+def compute(folder: Path, part: str, *options: object) -> Result:
+    return roughmdr("run", folder / "scene.toml", "-o", folder / "out.nc", "--part", part, *options)
+
+
+def refused(done: Result) -> str:
+    assert done.exit_code == 2, done.output
+    assert "Traceback" not in done.output
+    return done.output
+
+
+@given(
+    counts=st.lists(st.integers(1, 40), min_size=1, max_size=12), total=st.integers(1, 60), first=st.integers(0, 1000)
+)
+def test_each_run_is_in_one_part_and_all_parts_have_about_as_many(counts: list[int], total: int, first: int) -> None:
+    one = Rounds(make_plan(read(scene()))).begin()[0]
+    ranges = [one._replace(key=str(cell), first=first, last=first + count) for cell, count in enumerate(counts)]
+    parts = [Share(number, total).of(ranges) for number in range(1, total + 1)]
+    runs = sorted((each.key, run) for part in parts for each in part for run in range(each.first, each.last))
+    assert runs == sorted((each.key, run) for each in ranges for run in range(each.first, each.last))
+    sizes = [sum(each.last - each.first for each in part) for part in parts]
+    assert max(sizes) - min(sizes) <= 1
+
+
+@pytest.mark.parametrize("text", ["0/3", "4/3", "1", "1/0", "-1/3", "1/3/5", "a/b", "1.0/3", "01/3", ""])
+def test_what_is_no_part_is_refused(tmp_path: Path, text: str) -> None:
+    write_scene(tmp_path, SWEPT)
+    assert f"part is {text!r}; it must be" in refused(compute(tmp_path, text))
+
+
+@pytest.mark.parametrize(
+    ("keep", "total"), [("curves", 4), ("statistics", 4), large("statistics", 7), large("curves", 1), ("curves", 20)]
+)
+def test_joined_they_have_the_bits_of_one_run(tmp_path: Path, keep: str, total: int) -> None:
+    table = SWEPT | {"output": {"keep": keep}}
+    for name in ("one", "parts"):
+        write_scene(tmp_path / name, table)
+    one, parts = tmp_path / "one", tmp_path / "parts"
+    assert roughmdr("run", one / "scene.toml", "-o", one / "out.nc").exit_code == 0
+    for number in random.Random(total).sample(range(1, total + 1), total):
+        done = compute(parts, f"{number}/{total}", "--workers", 1 + number % 3)
+        assert done.exit_code == 0, done.output
+        assert ("fewer runs than parts" if number > 15 else "this part is done") in done.output
+        assert not (parts / "out.nc").exists()
+    assert roughmdr("join", parts / "out.nc").exit_code == 0
+    with xr.open_dataset(one / "out.nc") as base:
+        assert_result(parts, base.load())
+    assert_clean(parts)
+
+
+@pytest.mark.large
+@pytest.mark.parametrize(("keep", "total"), [("curves", 8), ("statistics", 8)])
+def test_at_once_and_killed_at_random(tmp_path: Path, keep: str, total: int, request: pytest.FixtureRequest) -> None:
+    """Each is killed until it has ended by itself before that."""
+    folder, chosen = tmp_path / "batch", random.Random(total)
+    write_scene(folder, CURVES if keep == "curves" else STATISTICS)
+    left, kills = set(range(1, total + 1)), 0
+    while left:
+        with ExitStack() as stack:
+            batches = {
+                number: stack.enter_context(running(Batch(folder, "--part", f"{number}/{total}", "--workers", 1)))
+                for number in left
+            }
+            if kills < total:
+                folders = [Share(number, total).folder(folder / "out.nc") for number in left]
+                while not any((path / "000001.npz").exists() for path in folders):
+                    time.sleep(0.002)
+                time.sleep(chosen.uniform(0.0, 0.1))
+                for number in chosen.sample(sorted(left), (len(left) + 1) // 2):
+                    kills += batches[number].process.poll() is None
+                    batches.pop(number).kill()
+            for number, batch in batches.items():
+                batch.succeed()
+                left.remove(number)
+    assert kills
+    assert roughmdr("join", folder / "out.nc").exit_code == 0
+    assert_result(folder, request.getfixturevalue(keep))
+    assert_clean(folder)
+
+
+def test_parts_that_are_missing_or_not_done_are_named(tmp_path: Path) -> None:
+    write_scene(tmp_path, SWEPT)
+    out = tmp_path / "out.nc"
+    assert f"no part of it is here; expected folders such as {out}.1-of-8.parts" in refused(roughmdr("join", out))
+    for number in (1, 3):
+        assert compute(tmp_path, f"{number}/4").exit_code == 0
+    said = refused(roughmdr("join", out))
+    assert f"7 runs of the parts 2/4, 4/4 are not done; compute them by: roughmdr run SCENE -o {out} --part 2/4" in said
+    for number in (2, 4):
+        assert compute(tmp_path, f"{number}/4").exit_code == 0
+    Share(3, 4).folder(out).joinpath("000001.npz").write_bytes(b"")
+    assert "4 runs of the parts 3/4 are not done" in refused(roughmdr("join", out))
+    assert compute(tmp_path, "3/4").exit_code == 0
+    assert roughmdr("join", out).exit_code == 0
+    assert_clean(tmp_path)
+
+
+def test_parts_of_other_batches_are_refused(tmp_path: Path) -> None:
+    write_scene(tmp_path, SWEPT)
+    out = tmp_path / "out.nc"
+    assert compute(tmp_path, "1/2").exit_code == 0
+    assert "is 8" in refused(compute(tmp_path, "1/2", "--set", "seed=8"))
+    assert compute(tmp_path, "2/2", "--set", "seed=8").exit_code == 0
+    assert "are parts of different scenes" in refused(roughmdr("join", out))
+    assert compute(tmp_path, "2/2", "--fresh").exit_code == 0
+    assert compute(tmp_path, "2/3").exit_code == 0
+    assert "there are parts of 2 and of 3; remove the others" in refused(roughmdr("join", out))
+    shutil.rmtree(Share(2, 3).folder(out))
+    with locked_store(Share(2, 2).beside(out)):
+        assert f"{out}.2-of-2: another run is writing it (process {os.getpid()}" in refused(roughmdr("join", out))
+    assert roughmdr("join", out).exit_code == 0
+
+
+def test_how_far_a_part_is(tmp_path: Path) -> None:
+    write_scene(tmp_path, SWEPT)
+    told = json.loads(compute(tmp_path, "2/4", "--json").stdout)["parts"]
+    assert (told["part"], told["done"], told["total"], told["output"]) == ("2/4", 4, 4, str(tmp_path / "out.nc"))
+    said = roughmdr("info", tmp_path / "out.nc.2-of-4.parts").output
+    assert "part         2 of 4" in said
+    assert "A small scene: 4 of 4 runs" in said
+    assert f"roughmdr join {tmp_path / 'out.nc'}" in said
+
+
+def test_how_many_runs_an_error_takes_cannot_be_parted(tmp_path: Path) -> None:
+    write_scene(tmp_path, SWEPT | {"accuracy": {"relative": 0.1}})
+    assert "accuracy: how many runs there are follows from their results" in refused(compute(tmp_path, "1/2"))
+
+
+def test_runs_that_failed_are_tried_again(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    from roughmdr.batch import tasks
+
+    write_scene(tmp_path, SWEPT)
+    out, simulate = tmp_path / "out.nc", tasks.simulate_realization
+
+    def failing(given: Any, path: Any, realization: int, *others: Any) -> Any:
+        if realization == 2:
+            raise OutOfRange("it cannot be")
+        return simulate(given, path, realization, *others)
+
+    with monkeypatch.context() as patched:
+        patched.setattr(tasks, "simulate_realization", failing)
+        ends = [compute(tmp_path, f"{number}/2") for number in (1, 2)]
+        assert sorted(each.exit_code for each in ends)[-1] == 1
+        assert "it cannot be" in "".join(each.output for each in ends)
+        joined = roughmdr("join", out)
+        assert (joined.exit_code, "it cannot be" in joined.output) == (1, True)
+    assert len(list(tmp_path.glob("*.parts"))) == 2  # the result lacks runs, and nothing is thrown away
+    assert roughmdr("join", out).exit_code == 0
+    assert_clean(tmp_path)
+    with xr.open_dataset(out) as result:
+        assert not result.status.any()
