@@ -16,6 +16,7 @@ from roughmdr.scene.keys import set_key
 from roughmdr.scene.scene import Scene
 from roughmdr.scene.sweep import flatten
 from roughmdr.schema.toml_text import key_lines, line_of, parse_toml, unquote_key
+from roughmdr.schema.units import as_text
 from roughmdr.schema.wording import printable, short_repr
 from roughmdr.storage.files import check_regular_file, is_open_pipe
 from roughmdr.storage.netcdf_reading import read_attribute, read_dimensions
@@ -195,7 +196,7 @@ def _parse_value(text: str) -> Any:
 
 
 def _to_plain(value: Any) -> Any:
-    """Convert arrays, tuples and sets to lists, and numpy's numbers to Python's, as TOML would give them."""
+    """Convert arrays, tuples and sets to lists, numpy's numbers to Python's, and quantities of pint to strings."""
     if isinstance(value, dict):
         return {key: _to_plain(entry) for key, entry in value.items()}
     if isinstance(value, set | frozenset):
@@ -204,7 +205,7 @@ def _to_plain(value: Any) -> Any:
         return str(value)
     if isinstance(value, np.ndarray | np.generic):
         return value.tolist()
-    return [_to_plain(entry) for entry in value] if isinstance(value, list | tuple) else value
+    return [_to_plain(entry) for entry in value] if isinstance(value, list | tuple) else as_text(value)
 
 
 def _normalise(table: dict[str, Any], folder: Path) -> None:

@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike
 from roughmdr.errors import OutOfRange, RoughmdrError
 from roughmdr.numerics.arguments import Floats
 from roughmdr.schema.quantities import Quantity, from_text
+from roughmdr.schema.units import as_text
 
 
 @cache
@@ -57,7 +58,7 @@ def floats_in_si(name: str, raw: ArrayLike, dimension: str, allowed: str) -> Flo
     that they must be what is ``allowed``.
     """
     try:
-        given = np.array(raw)
+        given = np.array(as_text(raw))
         if given.dtype.kind != "U":
             return given.astype(np.float64)
         return np.reshape([from_text(name, str(text), dimension) for text in given.flat], given.shape)

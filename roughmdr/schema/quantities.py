@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from roughmdr.errors import OutOfRange, RoughmdrError, warn_limits
 from roughmdr.schema.json_schema import JsonSchema
-from roughmdr.schema.units import DIMENSIONLESS, example_of_unit, millipascals, quantity, quantity_pattern
+from roughmdr.schema.units import DIMENSIONLESS, as_text, example_of_unit, millipascals, quantity, quantity_pattern
 from roughmdr.schema.wording import short_repr
 
 if TYPE_CHECKING:
@@ -70,6 +70,7 @@ class Quantity(Reader):
     def argument(self, name: str, value: Any) -> float:
         """Return the argument ``name`` of a Python function in SI; OutOfRange unless it is within the bounds."""
         unit = "" if self.dimension == DIMENSIONLESS else f" {self.dimension}"
+        value = as_text(value)
         try:
             number = from_text(name, value, self.dimension) if isinstance(value, str) else float(value)
         except OutOfRange:

@@ -2,6 +2,7 @@
 
 import math
 import re
+from contextlib import suppress
 from decimal import Decimal
 from functools import cache
 from numbers import Real
@@ -101,6 +102,36 @@ def quantity(value: object, dimension: str) -> float:
     if not math.isfinite(number):
         raise RoughmdrError("expected a finite number")
     return number
+
+
+def as_text(value: Any) -> Any:
+    """Return a quantity of pint as a string with a unit, one of several numbers as a list of them.
+
+    Other values, and quantities of a dimension that no scene has, are returned as they are.
+    """
+    if not (hasattr(value, "magnitude") and hasattr(value, "is_compatible_with")):
+        return value
+    unit = f"{value.units:~C}"
+    if unit and not _is_known(unit):
+        spelled = [f"1{base}" if base[0] == "/" else base for ((base, _), *_) in _BASES.values()]
+        fitting = [base for base in spelled if value.is_compatible_with(base)]
+        if not fitting:
+            return value
+        unit = fitting[-1]  # of J/m^2 and N/m the latter, which is read for both
+        value = value.to(unit)
+    numbers = value.magnitude.tolist() if hasattr(value.magnitude, "tolist") else value.magnitude
+    if isinstance(numbers, list):
+        return [f"{number!r} {unit}" for number in numbers] if unit else numbers
+    return f"{numbers!r} {unit}" if unit else numbers
+
+
+def _is_known(unit: str) -> bool:
+    """Return whether strings may have a unit, whatever its dimension."""
+    for dimension in (*_BASES, DIMENSIONLESS):
+        with suppress(RoughmdrError):
+            unit_factor(unit, dimension)
+            return True
+    return False
 
 
 def millipascals(value: object) -> str:

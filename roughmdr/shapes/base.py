@@ -17,7 +17,7 @@ from roughmdr.numerics.arguments import Floats
 from roughmdr.numerics.rebind import rebuilt
 from roughmdr.schema.arguments import floats_in_si
 from roughmdr.schema.keywords import check_keywords
-from roughmdr.schema.units import quantity
+from roughmdr.schema.units import as_text, quantity
 from roughmdr.schema.wording import short_repr
 from roughmdr.shapes.profile import Profile, zero
 
@@ -148,7 +148,8 @@ class Shape(ABC):
     def __post_init__(self) -> None:
         parameters = self.parameters
         self.parameter_set(set(parameters))
-        for name, value in parameters.items():
+        for name, given in parameters.items():
+            value = parameters[name] = as_text(given)
             if isinstance(value, str):
                 try:
                     parameters[name] = quantity(value, self.units[name])
