@@ -27,8 +27,7 @@ from roughmdr.kernels.choose import choose
 from roughmdr.loading.staircase import no_memory, staircase
 from roughmdr.numerics.arguments import Floats
 from roughmdr.numerics.jit import compiled
-from roughmdr.shapes import SHAPES as SHAPE_OF
-from roughmdr.shapes import PowerLaw, ProfileShape, Shape
+from roughmdr.shapes import SHAPES as SHAPE_OF, PowerLaw, ProfileShape, Shape
 from roughmdr.shapes.kappa import kappa
 
 MODULUS, WORK = 4e6, 0.05

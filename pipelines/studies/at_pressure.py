@@ -17,10 +17,8 @@ from studies.hills.maps import MapCase
 from studies.study import Figure, Study, in_two_processes, table, without_limits
 from studies.surfaces import Surface, surface_of
 from studies.versus_adhesive_bem import by_elements
-from studies.versus_adhesive_bem.cases import FLATTER, PRESSED, STATED, flat_law
-from studies.versus_adhesive_bem.cases import Case as Adhering
-from studies.versus_bem.ensembles import Case
-from studies.versus_bem.ensembles import separations as of_asperities
+from studies.versus_adhesive_bem.cases import FLATTER, PRESSED, STATED, Case as Adhering, flat_law
+from studies.versus_bem.ensembles import Case, separations as of_asperities
 
 SEED = 2027  # seed of the surfaces; those of seed 7 have set the constants
 FRACTIONS = np.array([0.003, 0.006, 0.012, 0.025, 0.05, 0.1, 0.15])

@@ -21,8 +21,7 @@ from roughmdr.kernels.adhesion import Adhesion
 from roughmdr.kernels.choose import choose
 from roughmdr.kernels.interface import Columns
 from roughmdr.loading.path import LoadingPath
-from roughmdr.loading.pull_off import WITHOUT_TENSION, PullOff, locate, unloadings
-from roughmdr.loading.pull_off import prepare as prepare_pull_off
+from roughmdr.loading.pull_off import WITHOUT_TENSION, PullOff, locate, prepare as prepare_pull_off, unloadings
 from roughmdr.loading.staircase import no_memory
 from roughmdr.model_error import Assumptions, Givens, crowd_warnings
 from roughmdr.model_error.interaction import overlap_share, poisson_overlap

@@ -10,8 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from roughmdr.batch.moments import ROWS as KNOWN_ROWS
-from roughmdr.batch.moments import KnownMoments, Moments
+from roughmdr.batch.moments import ROWS as KNOWN_ROWS, KnownMoments, Moments
 from roughmdr.loading.pull_off import PullOff
 from roughmdr.numerics.arguments import Floats
 from roughmdr.variables import RUN_DIAGNOSTICS

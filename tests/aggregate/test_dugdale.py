@@ -11,8 +11,7 @@ import xarray as xr
 from click.testing import CliRunner
 from figures import adhesion_range as study
 from forms import large
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from hypothesis import given, settings, strategies as st
 from mpmath import mp
 from scenes import ensemble, scene
 

@@ -8,8 +8,7 @@ import numpy as np
 import pytest
 import xarray as xr
 from forms import large, large_where_compiled
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from hypothesis import given, settings, strategies as st
 from mpmath import mp, mpf
 from twins.machine_path import BruteForce
 

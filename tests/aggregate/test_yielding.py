@@ -6,8 +6,7 @@ from typing import Any
 import numpy as np
 import pytest
 from forms import large
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from hypothesis import given, settings, strategies as st
 from scipy.integrate import quad
 from scipy.optimize import brentq
 from scipy.special import gammaincc

@@ -5,9 +5,7 @@ from typing import Any
 import numpy as np
 import pytest
 import xarray as xr
-from hypothesis import given as drawn
-from hypothesis import settings
-from hypothesis import strategies as st
+from hypothesis import given as drawn, settings, strategies as st
 from scenes import CONDUCTION, ensemble, scene
 
 import roughmdr as rm

@@ -8,8 +8,7 @@ import numpy as np
 import pytest
 import xarray as xr
 from forms import large_where_compiled
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from hypothesis import given, settings, strategies as st
 from twins.spring_in_series import (
     DugdaleParaboloid,
     Held,

@@ -8,8 +8,7 @@ from itertools import pairwise
 import mpmath
 import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from hypothesis import given, settings, strategies as st
 
 from roughmdr.batch.moments import Moments, MomentTree, block_moments, dyadic_blocks, moments_of
 

@@ -10,8 +10,7 @@ import numpy as np
 import pytest
 import xarray as xr
 from batches import interrupted
-from hypothesis import HealthCheck, given, settings
-from hypothesis import strategies as st
+from hypothesis import HealthCheck, given, settings, strategies as st
 from scenes import ASPERITIES, scene
 
 import roughmdr as rm

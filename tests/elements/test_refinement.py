@@ -8,8 +8,7 @@ import pytest
 import xarray as xr
 from forms import large
 from studies.hills.grids import SURFACES, measure_case, report_grids
-from studies.hills.maps import ANISOTROPIC, ISOTROPIC, separations, square
-from studies.hills.maps import SIDE as SIDE_OF_CASES
+from studies.hills.maps import ANISOTROPIC, ISOTROPIC, SIDE as SIDE_OF_CASES, separations, square
 
 from roughmdr.elements import refine
 from roughmdr.elements.half_space import BoundaryElements

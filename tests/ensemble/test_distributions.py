@@ -9,8 +9,7 @@ import numpy as np
 import pytest
 import scipy.stats
 from click.testing import CliRunner
-from hypothesis import Phase, assume, given, settings
-from hypothesis import strategies as st
+from hypothesis import Phase, assume, given, settings, strategies as st
 from scenes import ASPERITIES, scene
 
 import roughmdr as rm

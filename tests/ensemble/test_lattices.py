@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 import xarray as xr
 from click.testing import CliRunner
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from hypothesis import given, settings, strategies as st
 from scenes import ASPERITIES, scene
 from scipy.spatial import cKDTree
 

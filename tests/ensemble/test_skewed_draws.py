@@ -9,8 +9,7 @@ import pytest
 import xarray as xr
 from batches import interrupted
 from forms import large
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from hypothesis import given, settings, strategies as st
 from scenes import ASPERITIES, scene
 from scipy.special import ndtr, ndtri
 

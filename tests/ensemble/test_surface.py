@@ -5,8 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import xarray as xr
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from hypothesis import given, settings, strategies as st
 
 import roughmdr as rm
 from roughmdr.ensemble.maps.detrend import remove_trend

@@ -7,8 +7,7 @@ import numpy as np
 import pytest
 import xarray as xr
 from forms import large
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from hypothesis import given, settings, strategies as st
 
 import roughmdr as rm
 from roughmdr.ensemble.maps import height_map

@@ -6,8 +6,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 from forms import large
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from hypothesis import given, settings, strategies as st
 from numpy.polynomial.legendre import leggauss
 from scenes import ensemble
 

@@ -10,8 +10,7 @@ import numpy as np
 import pytest
 import scipy.stats
 from forms import large
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from hypothesis import given, settings, strategies as st
 from mpmath import mp, mpf
 from oracles.quantile_means import mean_of_correlated, mean_of_heights, mean_of_radii
 from studies.all_distributions import Scene, draw, families, judge

@@ -5,8 +5,7 @@ import tomllib
 import numpy as np
 import pandas as pd
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from hypothesis import given, settings, strategies as st
 from measurements import inside
 from scipy.optimize import least_squares
 from tips import MODULUS, OFFSET, WORK, Floats, Tip

@@ -7,8 +7,7 @@ import numpy as np
 import pandas as pd
 import pytest
 from forms import large
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from hypothesis import given, settings, strategies as st
 from numpy.typing import NDArray
 
 from roughmdr.fitting.fit import scene_to_fit

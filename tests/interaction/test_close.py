@@ -6,8 +6,7 @@ import math
 import numpy as np
 import pytest
 from forms import large_where_compiled
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from hypothesis import given, settings, strategies as st
 from scenes import ensemble
 from scipy.integrate import quad
 from scipy.spatial.distance import pdist, squareform

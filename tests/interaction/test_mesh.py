@@ -8,8 +8,7 @@ from scipy.special import erfcinv
 
 from roughmdr.interaction.dense import Dense
 from roughmdr.interaction.green import Periodic
-from roughmdr.interaction.mesh import _MESH_PER_REACH as MESH_PER_REACH
-from roughmdr.interaction.mesh import Mesh
+from roughmdr.interaction.mesh import _MESH_PER_REACH as MESH_PER_REACH, Mesh
 from roughmdr.numerics.arguments import Floats
 
 ERRORS = 1e-3, 3e-7, 1e-9

@@ -3,8 +3,7 @@
 import numpy as np
 import pytest
 import xarray as xr
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from hypothesis import given, settings, strategies as st
 from scenes import ensemble
 from scipy.optimize import brentq, minimize_scalar
 from test_contacts import EXAMPLES, one

@@ -4,8 +4,7 @@ import numba
 import numpy as np
 import pytest
 from forms import large_where_compiled
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from hypothesis import given, settings, strategies as st
 
 import roughmdr as rm
 

@@ -8,8 +8,7 @@ from typing import Any, Literal
 import numba
 import numpy as np
 import pytest
-from hypothesis import example, given, settings
-from hypothesis import strategies as st
+from hypothesis import example, given, settings, strategies as st
 from scipy.integrate import quad
 
 import roughmdr as rm

@@ -2,8 +2,7 @@
 
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 
 from roughmdr.ensemble.ensemble import Ensemble
 from roughmdr.model_error.coupling import (

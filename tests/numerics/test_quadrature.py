@@ -4,8 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from hypothesis import given, settings, strategies as st
 
 from roughmdr.numerics.arguments import Floats
 from roughmdr.numerics.quadrature import Rows, integrate, panel_rule, refine_edges, running_integral

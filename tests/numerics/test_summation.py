@@ -3,8 +3,7 @@
 import math
 
 import numpy as np
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from hypothesis import given, settings, strategies as st
 
 from roughmdr.numerics.summation import BLOCK, accumulate, block_minimum, cumulative_sum, sum_by_halves
 

@@ -9,8 +9,7 @@ import numpy as np
 import pytest
 import tomli_w
 from click.testing import CliRunner
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from hypothesis import given, settings, strategies as st
 
 from roughmdr.cli import main
 from roughmdr.ensemble.ensemble import Ensemble

@@ -2,8 +2,7 @@
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from hypothesis import given, settings, strategies as st
 from numpy.typing import NDArray
 
 from roughmdr.result.between import ANYWHERE, AT_A_PLACE, CONFIDENCE, REACH, off_line

@@ -14,8 +14,7 @@ import xarray as xr
 from batches import CURVES, STATISTICS, Batch, assert_clean, assert_result, running, write_scene
 from click.testing import CliRunner, Result
 from forms import large
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 from scenes import scene
 
 from roughmdr.batch.plan import make_plan

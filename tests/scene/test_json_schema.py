@@ -15,8 +15,7 @@ import jsonschema
 import pytest
 import tomli_w
 from click.testing import CliRunner
-from hypothesis import HealthCheck, given, settings
-from hypothesis import strategies as st
+from hypothesis import HealthCheck, given, settings, strategies as st
 from scenes import ASPERITIES, scene
 from studies.random_scenes.scenes import scenes, write_inputs
 from test_mutations import ALL, BASES, FEW_AND_ALL, Mutation

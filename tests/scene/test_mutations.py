@@ -13,8 +13,7 @@ import tomli_w
 import xarray as xr
 from click.testing import CliRunner
 from forms import large
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from hypothesis import given, settings, strategies as st
 from pydantic import BaseModel
 from scenes import ASPERITIES, CONDUCTION, SCENE
 

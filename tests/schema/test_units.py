@@ -2,8 +2,7 @@ import math
 from itertools import pairwise
 
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from hypothesis import given, settings, strategies as st
 
 from roughmdr.errors import RoughmdrError
 from roughmdr.schema.quantities import adheres

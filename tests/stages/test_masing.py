@@ -1,8 +1,7 @@
 """The memory of friction on lateral paths: properties that hold for any first curve."""
 
 import numpy as np
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from hypothesis import given, settings, strategies as st
 
 from roughmdr.loading.masing import Masing, directions
 from roughmdr.numerics.arguments import Floats

@@ -5,8 +5,7 @@ import math
 import numpy as np
 import pytest
 from forms import large
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from hypothesis import given, settings, strategies as st
 from oracles.multiprecision import mp
 from twins.sliding_springs import follow
 

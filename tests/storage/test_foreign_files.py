@@ -11,8 +11,7 @@ import numpy as np
 import pytest
 from foreign import CHANGES, Change, Content, content_of
 from foreign_commands import OF_INPUT, OF_RESULT, RESULTS, all_failed, checked, filled, put, remarked
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from hypothesis import given, settings, strategies as st
 
 EXAMPLES = int(os.environ.get("ROUGHMDR_EXAMPLES", "20"))
 

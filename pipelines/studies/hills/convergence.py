@@ -5,8 +5,7 @@ from functools import partial
 import numpy as np
 import xarray as xr
 
-from roughmdr.ensemble.maps.hills.find import SCALES as USUAL_SCALES
-from roughmdr.ensemble.maps.hills.find import wavelength
+from roughmdr.ensemble.maps.hills.find import SCALES as USUAL_SCALES, wavelength
 from roughmdr.ensemble.maps.resolution import hills_error
 from roughmdr.ensemble.maps.summits import find_summits
 from roughmdr.numerics.arguments import Floats

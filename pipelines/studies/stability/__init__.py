@@ -26,8 +26,7 @@ from roughmdr.kernels.dugdale import equilibrium
 from studies.stability.cases import AXES, Case, design
 from studies.stability.crowding import Steps, crowded, crowds
 from studies.stability.judge import MODELS, OUTCOMES, REFUSED, WRONG, Verdict, verdicts
-from studies.stability.metamorphic import KINDS, checks
-from studies.stability.metamorphic import QUICK as QUICK_KINDS
+from studies.stability.metamorphic import KINDS, QUICK as QUICK_KINDS, checks
 from studies.study import Axes, Figure, Study, blank, named, table
 
 FULL, QUICK = {"elastic": 512, "jkr": 512, "dugdale": 128}, {"elastic": 16, "jkr": 16, "dugdale": 4}

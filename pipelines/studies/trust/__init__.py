@@ -17,8 +17,7 @@ from roughmdr.numerics.arguments import Floats
 from roughmdr.scene import Scene, read
 from studies.comparison import FACTOR, bounds, draw_stated, in_cases, panels
 from studies.study import Figure, Study, table, without_limits
-from studies.trust.samples import CASES as SURFACES
-from studies.trust.samples import measure_samples, report_samples
+from studies.trust.samples import CASES as SURFACES, measure_samples, report_samples
 from studies.trust.scenes import CASES, QUICK, Case
 from studies.trust.truth import MAPS, by_boundary_elements, by_pairs, by_range_of_adhesion, of_map
 from studies.versus_bem.ensembles import side, write_map

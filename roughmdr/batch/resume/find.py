@@ -5,8 +5,7 @@ from pathlib import Path
 
 import numpy as np
 
-from roughmdr.batch.moments import ROWS as KNOWN_ROWS
-from roughmdr.batch.moments import KnownMoments
+from roughmdr.batch.moments import ROWS as KNOWN_ROWS, KnownMoments
 from roughmdr.batch.plan import Plan
 from roughmdr.batch.resume.keys import changes, versions
 from roughmdr.batch.resume.reusable import ReusableRows

@@ -11,9 +11,11 @@ import numpy as np
 
 from roughmdr.kernels.interface import Columns, Material
 from roughmdr.kernels.profile.layout import CONTROL, COUNT, DEPTH, FOLD, ONSET, RANGE, STRENGTH, UNIT
-from roughmdr.kernels.profile.rows import force_scales as force_scales_of_row
-from roughmdr.kernels.profile.rows import params_of as params_of_row
-from roughmdr.kernels.profile.rows import scales as scales_of_row
+from roughmdr.kernels.profile.rows import (
+    force_scales as force_scales_of_row,
+    params_of as params_of_row,
+    scales as scales_of_row,
+)
 from roughmdr.numerics.arguments import Floats
 from roughmdr.numerics.jit import compiled, njit
 

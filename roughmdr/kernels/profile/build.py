@@ -8,9 +8,15 @@ import math
 from collections.abc import Callable
 from typing import Any
 
-from roughmdr.kernels.dugdale import both_edges, edges_table, paraboloid, zone, zone_edge
-from roughmdr.kernels.dugdale import branches as dugdale_branches
-from roughmdr.kernels.dugdale import equilibrium as dugdale_equilibrium
+from roughmdr.kernels.dugdale import (
+    both_edges,
+    branches as dugdale_branches,
+    edges_table,
+    equilibrium as dugdale_equilibrium,
+    paraboloid,
+    zone,
+    zone_edge,
+)
 from roughmdr.kernels.profile import one_number
 from roughmdr.kernels.profile.any_shape import OF_SHAPE, functions_by_address, of_any
 from roughmdr.kernels.profile.interface import ProfileKernels

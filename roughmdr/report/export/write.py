@@ -20,8 +20,7 @@ from roughmdr.result.given import given_result
 from roughmdr.result.select import cell_of, select
 from roughmdr.result.view import ResultView
 from roughmdr.schema.keywords import with_options
-from roughmdr.schema.units import DIMENSIONLESS
-from roughmdr.schema.units import quantity as number_in_si
+from roughmdr.schema.units import DIMENSIONLESS, quantity as number_in_si
 from roughmdr.schema.wording import short_repr, suggestion
 from roughmdr.storage.files import check_ending, check_writable, replace_atomically
 from roughmdr.storage.result_file import check_same_kind

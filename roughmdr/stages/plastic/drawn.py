@@ -11,8 +11,7 @@ from roughmdr.aggregate.law import LoadSeparation
 from roughmdr.aggregate.problem import Problem
 from roughmdr.aggregate.totals import AREA, COUNT, FORCE
 from roughmdr.loading.path import LoadingPath
-from roughmdr.loading.pull_off import WITHOUT_TENSION, PullOff, locate, unloadings
-from roughmdr.loading.pull_off import prepare as prepare_pull_off
+from roughmdr.loading.pull_off import WITHOUT_TENSION, PullOff, locate, prepare as prepare_pull_off, unloadings
 from roughmdr.model_error.parts import Yielding
 from roughmdr.numerics.arguments import Floats
 from roughmdr.stages.plastic.body import LIMIT, Body, check_depth, range_warnings

@@ -23,10 +23,10 @@ from roughmdr.aggregate.totals import (
     ERROR,
     FORCE,
     RADIUS,
+    ROWS as TOTAL_ROWS,
     STIFFNESS,
     TOTAL_INDEX,
 )
-from roughmdr.aggregate.totals import ROWS as TOTAL_ROWS
 from roughmdr.ensemble import Source
 from roughmdr.ensemble.nodes import Rule
 from roughmdr.errors import OutOfRange

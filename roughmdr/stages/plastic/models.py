@@ -6,8 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from roughmdr.aggregate.totals import AREA, FORCE, STIFFNESS
-from roughmdr.aggregate.totals import RADIUS as RADIUS_SUM
+from roughmdr.aggregate.totals import AREA, FORCE, RADIUS as RADIUS_SUM, STIFFNESS
 from roughmdr.model_error.parts import PLASTIC_AT_FORCE, Yielding
 from roughmdr.numerics.arguments import Floats
 from roughmdr.numerics.jit import once, specialise

@@ -21,15 +21,23 @@ from roughmdr.aggregate.totals import (
     ERROR,
     FORCE,
     RADIUS,
+    ROWS as TOTAL_ROWS,
     STIFFNESS,
 )
-from roughmdr.aggregate.totals import ROWS as TOTAL_ROWS
 from roughmdr.errors import OutOfRange
 from roughmdr.numerics.arguments import Floats
 from roughmdr.numerics.jit import njit, once, specialise
 from roughmdr.numerics.summation import BLOCK, accumulate, sum_by_halves
-from roughmdr.stages.plastic.body import JUST_RISEN, ROWS, Body, Mark, PlasticKernels, State, fill_elastic
-from roughmdr.stages.plastic.body import RADIUS as OWN_RADIUS
+from roughmdr.stages.plastic.body import (
+    JUST_RISEN,
+    RADIUS as OWN_RADIUS,
+    ROWS,
+    Body,
+    Mark,
+    PlasticKernels,
+    State,
+    fill_elastic,
+)
 
 _KERNEL_ERROR = 1e-13  # error of a force over 2 E* a times the deepest indentation, as tested
 _ROUNDING = 2.0**-52  # relative error of an indentation, over height and separation

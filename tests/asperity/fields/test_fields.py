@@ -10,8 +10,7 @@ import mpmath
 import numpy as np
 import pytest
 from forms import large_where_compiled
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from hypothesis import given, settings, strategies as st
 from numpy.typing import NDArray
 from scipy.optimize import minimize_scalar
 from scipy.special import ellipk, ellipkm1

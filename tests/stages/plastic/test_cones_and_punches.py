@@ -7,8 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 from forms import large
-from hypothesis import example, given, settings
-from hypothesis import strategies as st
+from hypothesis import example, given, settings, strategies as st
 from oracles.multiprecision import mp
 from oracles.plastic import Springs
 from single import Single

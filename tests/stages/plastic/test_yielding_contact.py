@@ -6,8 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import assume, given, settings
-from hypothesis import strategies as st
+from hypothesis import assume, given, settings, strategies as st
 from single import Single
 
 from roughmdr.aggregate.totals import DISSIPATED, ENERGY, FORCE

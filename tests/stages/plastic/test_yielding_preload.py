@@ -7,8 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 from forms import large
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from hypothesis import given, settings, strategies as st
 
 from roughmdr.aggregate import simulate
 from roughmdr.aggregate.problem import Problem
