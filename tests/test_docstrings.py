@@ -19,8 +19,8 @@ SECTIONS = ("Parameters", "Returns", "Raises", "References", "Examples")
 
 def public() -> Iterator[tuple[str, Any]]:
     """Every public name, with what it stands for."""
-    for name in rm.__all__:
-        if name not in ("spectrum", "theory"):
+    for name in dir(rm):
+        if name not in ("spectrum", "theory", "__version__"):
             yield name, getattr(rm, name)
     for module in (rm.spectrum, rm.theory):
         for name in module.__all__:

@@ -191,7 +191,7 @@ def test_a_command_loads_only_what_it_uses(tmp_path: Path, arguments: list[str],
 def test_every_public_name_is_there() -> None:
     import roughmdr
 
-    for name in roughmdr.__all__:
+    for name in dir(roughmdr):
         assert getattr(roughmdr, name) is not None
     assert callable(roughmdr.indent)
     with pytest.raises(AttributeError, match="no attribute 'nothing'"):

@@ -2,6 +2,8 @@
 
 import inspect
 import pickle
+import pydoc
+import re
 import warnings
 from pathlib import Path
 from typing import Any
@@ -20,7 +22,7 @@ from roughmdr.shapes import SHAPES, Shape
 EXAMPLES = [kind(**kind.example()) for kind in SHAPES.values()]
 IDS = list(SHAPES)
 FUNCTIONS = [
-    *(getattr(rm, name) for name in rm.__all__ if inspect.isfunction(getattr(rm, name))),
+    *(getattr(rm, name) for name in dir(rm) if inspect.isfunction(getattr(rm, name))),
     *(getattr(rm.theory, name) for name in rm.theory.__all__ if inspect.isfunction(getattr(rm.theory, name))),
     rm.spectrum.SelfAffine.of,
 ]
@@ -172,8 +174,18 @@ def test_completion_offers_nothing_of_others() -> None:
         assert not set(offered) & set(dir(BaseModel))
     assert {"material", "asperities", "effective_modulus", "cells"} <= set(dir(one))
     assert {"modulus", "poisson"} <= set(dir(one.material))
+    assert {"run", "fit", "Paraboloid", "theory", "OutOfRange"} < set(dir(rm))
     assert dir(rm.theory) == sorted(rm.theory.__all__)
     assert dir(rm.spectrum) == sorted(rm.spectrum.__all__)
+
+
+def test_help_of_the_package_is_short_and_names_what_is_there() -> None:
+    text = pydoc.plain(pydoc.render_doc(rm))
+    assert len(text.splitlines()) < 100
+    named = re.findall(r"^ +(\w+)\((\w+)", text, re.MULTILINE)
+    assert len(named) >= 10
+    for name, first in named:
+        assert first in inspect.signature(getattr(rm, name)).parameters
 
 
 def short(**changes: Any) -> xr.Dataset:
