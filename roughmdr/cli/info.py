@@ -1,5 +1,7 @@
 """roughmdr info: tell what a result contains, or how far a batch is."""
 
+import math
+import time
 from contextlib import suppress
 from pathlib import Path
 
@@ -10,18 +12,25 @@ from roughmdr.cli.options import FILE, json_option
 from roughmdr.cli.terminal import Command, print_document, print_text
 from roughmdr.errors import StoreError
 
+_PAUSE = 1.0  # time [s] between two looks at a batch
+
 
 @click.command(cls=Command)
 @click.argument("result", type=FILE)
 @click.option("--cells", is_flag=True, help="List the cells of the sweep: status, time, errors, remarks.")
+@click.option("--follow", is_flag=True, help="Tell how far a batch is, until it ends.")
 @json_option
 @click.pass_context
-def info(ctx: click.Context, result: Path, cells: bool, as_json: bool) -> None:
+def info(ctx: click.Context, result: Path, cells: bool, follow: bool, as_json: bool) -> None:
     """Tell what RESULT contains.
 
     Prints sizes, the pull-off force with its error, run time, seed, versions and the scene. RESULT may also be
     OUT.nc.parts, while a run is at work or after it was interrupted: prints how far it is.
     """
+    if follow:
+        if as_json:
+            raise click.UsageError("--follow and --json exclude each other")
+        result = _follow(result)
     if result.name.endswith(".parts") and result.is_dir():
         _info_parts(ctx, result, cells=cells, as_json=as_json)
         return
@@ -50,6 +59,34 @@ def info(ctx: click.Context, result: Path, cells: bool, as_json: bool) -> None:
         print_document(ctx, result=result_table(data, result))
     else:
         print_text(describe(data, result, cells=cells))
+
+
+def _follow(result: Path) -> Path:
+    """Print how far a batch is until no run is at work; return its result, or the folder of its parts without one."""
+    from roughmdr.batch.resume.kept import progress_of, read_kept
+    from roughmdr.batch.resume.store import store_folder
+    from roughmdr.report.parts import describe_progress
+
+    folder = result if result.name.endswith(".parts") else store_folder(result)
+    progress, first, started, last = None, 0, 0.0, ""
+    while folder.is_dir():
+        try:
+            kept = read_kept(folder)
+        except StoreError:  # it has just ended
+            break
+        if progress is None and (kept.scene or kept.holder is None):
+            progress, first, started = progress_of(kept), kept.runs, time.monotonic()
+        if progress is not None:
+            done = kept.runs - first
+            line = describe_progress(kept, progress, (time.monotonic() - started) / done if done else math.inf)
+            if line != last:
+                print_text(line)
+                last = line
+        if kept.holder is None:
+            return folder
+        time.sleep(_PAUSE)
+    output = folder.with_name(folder.name.removesuffix(".parts"))
+    return output if output.exists() else result
 
 
 def _info_parts(ctx: click.Context, folder: Path, *, cells: bool, as_json: bool) -> None:

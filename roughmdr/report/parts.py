@@ -1,12 +1,13 @@
 """The text and the table of ``roughmdr info OUT.nc.parts``: how far a batch is that is not over."""
 
+import math
 import shlex
 
 from roughmdr.batch.resume.kept import Kept, Progress, progress_of
 from roughmdr.report.documents import PartCellTable, PartsTable
 from roughmdr.report.result_document import swept_table
 from roughmdr.scene.sweep import describe_cell
-from roughmdr.schema.wording import format_table, printable
+from roughmdr.schema.wording import format_seconds, format_table, printable
 
 _MAX_CELLS = 30
 
@@ -29,6 +30,13 @@ def describe_parts(kept: Kept, *, cells: bool = False) -> str:
     else:
         lines.append(("goes on by", printable(kept.continued_by)))
     return format_table(lines)
+
+
+def describe_progress(kept: Kept, progress: Progress, seconds: float) -> str:
+    """Return how many runs are done and, where that is known, about how long the others take; one takes ``seconds``."""
+    told = _counted(kept, progress)
+    left = 0 if progress.total is None else progress.total - kept.runs
+    return told if left <= 0 or not math.isfinite(seconds) else f"{told}; about {format_seconds(left * seconds)} left"
 
 
 def parts_table(kept: Kept) -> PartsTable:

@@ -2,8 +2,10 @@
 
 import json
 import os
+import re
 import shutil
 import signal
+import sys
 from contextlib import chdir
 from pathlib import Path
 from typing import Any, get_type_hints
@@ -200,3 +202,34 @@ def test_a_result_says_nothing_of_it(tmp_path: Path) -> None:
     rm.run(tmp_path / "s.toml", tmp_path / "out.nc")
     assert json.loads(told(tmp_path / "out.nc", "--json"))["parts"] is None
     assert lines(tmp_path) == []
+
+
+@pytest.mark.large
+def test_a_batch_is_followed_to_its_result(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(sys.modules["roughmdr.cli.info"], "_PAUSE", 0.02)
+    folder = tmp_path / "batch"
+    write_scene(folder, SWEPT)
+    with running(Batch(folder, "--workers", "1", "--part", "1/2")) as batch:
+        until((folder / "out.nc.1-of-2.parts" / "000002.npz").exists)
+        done = CliRunner().invoke(main, ["info", "--follow", str(folder / "out.nc.1-of-2.parts")])
+        batch.succeed()
+    assert done.exit_code == 0, done.output
+    counts = [int(count) for count in re.findall(r"^A small scene: (\d+) of 48 runs", done.output, re.MULTILINE)]
+    assert counts == sorted(set(counts))
+    assert "kept         A small scene: 48 of 48 runs" in done.output
+    with running(Batch(folder, "--workers", "1")) as batch:
+        batch.wait_for_lines(2)
+        done = CliRunner().invoke(main, ["info", "--follow", str(folder / "out.nc")])
+        batch.succeed()
+    assert done.exit_code == 0, done.output
+    assert " of 96 runs; about " in done.output
+    assert "pull-off" in done.output  # the result is told at the end
+    assert CliRunner().invoke(main, ["info", "--follow", "--json", str(folder / "out.nc")]).exit_code == 2
+
+
+def test_where_no_run_is_at_work_there_is_nothing_to_follow(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    interrupted(SWEPT, tmp_path / "out.nc", 5, monkeypatch)
+    done = CliRunner().invoke(main, ["info", "--follow", str(tmp_path / "out.nc")])
+    assert done.exit_code == 0, done.output
+    assert "A small scene: 10 of 96 runs\n" in done.output
+    assert "at work      no run" in done.output
