@@ -1,4 +1,4 @@
-"""A result or an ensemble in a few lines."""
+"""A result, an ensemble or a fit in a few lines."""
 
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
@@ -7,11 +7,14 @@ import numpy as np
 
 from roughmdr.analysis.pull_off import pull_off
 from roughmdr.errors import StoreError
+from roughmdr.fitting.words import fit_lines
 from roughmdr.result.curves import is_ensemble, is_result, stored_curves
 from roughmdr.result.trust import trust_of_result
 from roughmdr.result.view import ResultView
 from roughmdr.schema.units import format_quantity
 from roughmdr.schema.wording import printable
+from roughmdr.storage.labelled import Labelled
+from roughmdr.storage.result_file import FIT
 from roughmdr.variables import AUXILIARY_COORDINATES, BRANCHES, LATERAL, STEP_COORDINATES
 
 if TYPE_CHECKING:
@@ -22,13 +25,15 @@ _MANY_AXES = 3
 
 
 def describe(dataset: "xr.Dataset") -> Iterator[tuple[str, str]]:
-    """Yield the lines on a result or an ensemble; one line for any other dataset. No curve is loaded."""
+    """Yield the lines on a result, an ensemble or a fit; one line for any other dataset. No curve is loaded."""
     if is_ensemble(dataset):
         yield from _describe_ensemble(dataset)
     elif is_result(dataset):
         yield from _describe_result(ResultView(dataset))
+    elif dataset.attrs.get("kind") == FIT:
+        yield from fit_lines(Labelled.of(dataset))
     else:
-        yield "dataset", "neither a result of roughmdr nor an ensemble of asperities"
+        yield "dataset", "neither a result of roughmdr, nor an ensemble of asperities, nor a fit"
 
 
 def _describe_result(result: ResultView) -> Iterator[tuple[str, str]]:

@@ -18,7 +18,7 @@ _SAID = 5  # most failed curves that are named
 
 def describe_fit(fit: Labelled) -> str:
     """Return the parameters with standard errors and 95 % intervals, the quality of the fit, and doubts."""
-    return format_table(_lines(fit))
+    return format_table(fit_lines(fit))
 
 
 def describe_parameters(fit: Labelled) -> list[str]:
@@ -44,7 +44,8 @@ def parameter_keys(fit: Labelled) -> list[str]:
     return list(map(str, fit.coordinates["parameter_name"].values))
 
 
-def _lines(fit: Labelled) -> Iterator[tuple[str, str]]:
+def fit_lines(fit: Labelled) -> Iterator[tuple[str, str]]:
+    """Yield the lines of ``describe_fit``: a name and a text."""
     many, fit = fit, typical(fit)
     for i, line in enumerate(describe_parameters(fit)):
         yield "" if i else "fitted", line

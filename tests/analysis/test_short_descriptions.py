@@ -95,3 +95,11 @@ def test_a_path_is_told_from_where_it_begins_and_values_from_the_least() -> None
     path = {"separation": {"start": "3 um", "stop": "1 um", "steps": 4}}
     stops = rm.run(scene(batch=None, path=path, sweep={"path.separation.stop": ["1 um", "0.5 um"]}))
     assert lines(stops.roughmdr)["path"] == "separation 3 to 0.5 um, loading"
+
+
+def test_a_fit() -> None:
+    table = scene(batch=None, adhesion=None, path={"separation": ["2 um", "1.5 um", "1 um", "0.5 um", "0 um"]})
+    measured = rm.run(table | {"batch": {"estimator": "expected"}}).force.to_dataframe()[["separation", "force"]]
+    fit = rm.fit(measured, table, ["material.modulus"], set={"material.modulus": "2 MPa"})
+    assert re.fullmatch(r"material\.modulus 3 ± \S+ MPa .*", lines(fit.roughmdr)["fitted"])
+    assert "<table" in fit.roughmdr._repr_html_()
