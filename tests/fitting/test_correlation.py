@@ -122,16 +122,16 @@ def test_a_misfit_is_no_correlated_noise(true: str, fitted: str) -> None:
 @pytest.mark.large
 @pytest.mark.parametrize("rho", [0.3, 0.6, 0.9])
 @pytest.mark.parametrize(
-    ("kind", "free", "draws"), [("hertz", [MODULUS, OFFSET], 200), ("jkr", [MODULUS, WORK, OFFSET], 20)]
+    ("kind", "free", "draws"), [("hertz", [MODULUS, OFFSET], 100), ("jkr", [MODULUS, WORK, OFFSET], 10)]
 )
 def test_intervals_of_tips_hold_true_values(kind: str, free: list[str], draws: int, rho: float) -> None:
-    """In 92 to 98 % of 200 draws, by whose chance a parameter has a standard deviation more or less."""
+    """In 92 to 98 % of 100 draws, by whose chance a parameter has a standard deviation more or less."""
     held = []
     for seed in range(draws):
         tip, frame = measured(kind, rho, seed, 300 if kind == "hertz" else 100)
         fit = rm.fit(frame, tip.scene(), free)
         held.append([inside(fit, key, tip.true(0.0)[key]) for key in free])
     share = 100.0 * np.mean(held, axis=0)
-    if draws == 200:
-        assert 90.5 <= share.min() <= share.max() <= 98.5
-    assert (92.0 if draws == 200 else 85.0) <= share.mean()
+    if draws == 100:
+        assert share.min() >= 89.8
+    assert (92.0 if draws == 100 else 80.0) <= share.mean() <= (99.0 if draws == 100 else 100.0)
