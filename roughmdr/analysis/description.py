@@ -30,7 +30,7 @@ def describe(dataset: "xr.Dataset") -> Iterator[tuple[str, str]]:
         yield from _describe_ensemble(dataset)
     elif is_result(dataset):
         yield from _describe_result(ResultView(dataset))
-    elif dataset.attrs.get("kind") == FIT:
+    elif dataset.attrs.get("kind") == FIT and "parameter_name" in dataset.coords:
         yield from fit_lines(Labelled.of(dataset))
     else:
         yield "dataset", "neither a result of roughmdr, nor an ensemble of asperities, nor a fit"

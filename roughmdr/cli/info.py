@@ -34,12 +34,13 @@ def info(ctx: click.Context, result: Path, cells: bool, follow: bool, as_json: b
     if result.name.endswith(".parts") and result.is_dir():
         _info_parts(ctx, result, cells=cells, as_json=as_json)
         return
-    parts = result.with_name(f"{result.name}.parts")
-    awaited = False
-    with suppress(OSError):  # a name that is too long for its parts has none
-        awaited = parts.is_dir() and not result.exists()
-    if awaited:
-        raise StoreError(f"{result}: is not written yet; what is finished is told by: roughmdr info {parts}")
+    if _is_missing(result):
+        from roughmdr.batch.resume.share import Share
+
+        shares = [share.folder(result) for share in Share.all_beside(result)]
+        for parts in (result.with_name(f"{result.name}.parts"), *shares):
+            if _is_folder(parts):
+                raise StoreError(f"{result}: is not written yet; what is finished is told by: roughmdr info {parts}")
     from roughmdr.report.summary import describe
     from roughmdr.storage.result_file import is_fit
 
@@ -64,12 +65,14 @@ def info(ctx: click.Context, result: Path, cells: bool, follow: bool, as_json: b
 def _follow(result: Path) -> Path:
     """Print how far a batch is until no run is at work; return its result, or the folder of its parts without one."""
     from roughmdr.batch.resume.kept import progress_of, read_kept
-    from roughmdr.batch.resume.store import store_folder
+    from roughmdr.batch.resume.store import MANIFEST, store_folder
     from roughmdr.report.parts import describe_progress
+    from roughmdr.storage.files import destination
 
-    folder = result if result.name.endswith(".parts") else store_folder(result)
+    folder = result if result.name.endswith(".parts") else store_folder(destination(result))
+    output = folder.with_name(folder.name.removesuffix(".parts"))
     progress, first, started, last = None, 0, 0.0, ""
-    while folder.is_dir():
+    while _is_folder(folder):
         try:
             kept = read_kept(folder)
         except StoreError:  # it has just ended
@@ -83,10 +86,24 @@ def _follow(result: Path) -> Path:
                 print_text(line)
                 last = line
         if kept.holder is None:
+            with suppress(OSError):  # the result was written, though runs failed
+                if output.stat().st_mtime >= (folder / MANIFEST).stat().st_mtime:
+                    return output
             return folder
         time.sleep(_PAUSE)
-    output = folder.with_name(folder.name.removesuffix(".parts"))
     return output if output.exists() else result
+
+
+def _is_missing(path: Path) -> bool:
+    with suppress(OSError):  # a name that is too long
+        return not path.exists()
+    return False
+
+
+def _is_folder(path: Path) -> bool:
+    with suppress(OSError):
+        return path.is_dir()
+    return False
 
 
 def _info_parts(ctx: click.Context, folder: Path, *, cells: bool, as_json: bool) -> None:

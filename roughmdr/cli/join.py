@@ -7,7 +7,7 @@ from typing import Any
 import click
 
 from roughmdr.cli.invocation import command_line, without_garbage_collection
-from roughmdr.cli.options import OUTPUT, json_option, workers_option
+from roughmdr.cli.options import OUTPUT, fresh_option, json_option, workers_option
 from roughmdr.cli.run import backend, print_done
 from roughmdr.cli.terminal import Command
 
@@ -15,10 +15,11 @@ from roughmdr.cli.terminal import Command
 @click.command(cls=Command)
 @click.argument("output", type=OUTPUT)
 @workers_option
+@fresh_option
 @click.option("--quiet", is_flag=True, help="Print nothing but errors.")
 @json_option
 @click.pass_context
-def join(ctx: click.Context, /, output: Path, workers: int, **silent: Any) -> None:
+def join(ctx: click.Context, /, output: Path, workers: int, fresh: bool, **silent: Any) -> None:
     """Write OUTPUT from the parts that "roughmdr run ... -o OUTPUT --part NUMBER/COUNT" has kept beside it.
 
     Names the parts that are missing or not done. Runs that failed are tried again. The numbers are those of one run of
@@ -28,5 +29,5 @@ def join(ctx: click.Context, /, output: Path, workers: int, **silent: Any) -> No
     with without_garbage_collection():
         from roughmdr.runner.shares import join as joined
     quiet = silent["quiet"] or silent["as_json"]
-    done = joined(output, backend(workers, "threads"), quiet=quiet, command=command_line())
+    done = joined(output, backend(workers, "threads"), fresh=fresh, quiet=quiet, command=command_line())
     print_done(ctx, done, output, started, **silent)

@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from roughmdr.batch.resume.share import Share
     from roughmdr.runner.backend import Backend
     from roughmdr.runner.cluster import Tls
+    from roughmdr.runner.shares import ComputedShare
     from roughmdr.storage.labelled import Labelled
 
 
@@ -81,8 +82,9 @@ def run(
     if share is not None:
         from roughmdr.runner.shares import compute_share
 
-        compute_share(planned, output, share, backend(**others), **options)
-        _print_share(ctx, share.folder(output), quiet=quiet, as_json=as_json)
+        _print_share(
+            ctx, compute_share(planned, output, share, backend(**others), **options), quiet=quiet, as_json=as_json
+        )
         return
     done = execute(planned, output, backend(**others), **options)
     print_done(ctx, done, output, started, quiet=quiet, verbose=verbose, as_json=as_json)
@@ -94,17 +96,22 @@ def _share(text: str) -> "Share":
     return Share.parse(text)
 
 
-def _print_share(ctx: click.Context, folder: Path, *, quiet: bool, as_json: bool) -> None:
+def _print_share(ctx: click.Context, done: "ComputedShare", *, quiet: bool, as_json: bool) -> None:
     """Tell what is kept of a part of the runs; exit with status 1 if runs failed."""
     from roughmdr.batch.resume.kept import read_kept
+    from roughmdr.report.documents import fault
     from roughmdr.report.parts import describe_parts, parts_table
 
-    kept = read_kept(folder) if folder.is_dir() else None
-    failed = kept is not None and bool(kept.failed)
+    kept = None if done.folder is None else read_kept(done.folder)
+    failed = f"{len(done.failures)} runs failed: {done.failures[0]}" if done.failures else ""
     if as_json:
-        print_document(ctx, INCOMPLETE if failed else 0, parts=kept and parts_table(kept))
+        faults = [fault(failed)] if failed else []
+        print_document(ctx, INCOMPLETE if failed else 0, faults=faults, parts=kept and parts_table(kept))
     elif not quiet:
-        print_text("kept         nothing: there are fewer runs than parts" if kept is None else describe_parts(kept))
+        nothing = "kept         nothing: the part has no runs, or the output holds them"
+        print_text(nothing if kept is None else describe_parts(kept))
+    elif failed:
+        print_text(f"roughmdr: {failed}", err=True)
     if failed:
         sys.exit(INCOMPLETE)
 

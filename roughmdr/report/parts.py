@@ -18,12 +18,12 @@ def describe_parts(kept: Kept, *, cells: bool = False) -> str:
     lines = [] if kept.share is None else [("part", "{} of {}".format(*kept.share))]
     lines += [("kept", _counted(kept, progress))]
     lines += _cells(kept, progress, len(progress.done) if cells else _MAX_CELLS)
-    if kept.failed:
+    done = kept.share is not None and progress.total is not None and kept.runs >= progress.total
+    if kept.failed and not done:
         reason = printable(kept.remark.partition("\n")[0])
         lines.append(("failed", f"{len(kept.failed)} runs ({reason}); the next batch repeats them"))
     if kept.began:
         lines.append(("begun", f"{kept.began}; something was kept last at {kept.last}"))
-    done = kept.share is not None and kept.runs == progress.total
     lines.append(("at work", "no run: this part is done" if done and kept.holder is None else _at_work(kept)))
     if done:
         lines.append(("when all are", printable(f"roughmdr join {shlex.quote(str(kept.output))}")))
@@ -79,7 +79,7 @@ def _counted(kept: Kept, progress: Progress) -> str:
     title = "" if progress.scene is None else f"{printable(progress.scene.title)}: "
     if progress.total is not None:
         return f"{title}{kept.runs} of {progress.total} runs"
-    more = ", of as many as the error asked for takes" if progress.scene is not None else ""
+    more = ", of as many as the error asked for takes" if progress.scene and progress.scene.accuracy else ""
     return f"{title}{kept.runs} runs{more}"
 
 
@@ -104,7 +104,8 @@ def _cells(kept: Kept, progress: Progress, most: int) -> list[tuple[str, str]]:
 
 def _at_work(kept: Kept) -> str:
     if kept.holder is None:
-        return "no run: it was interrupted, or is about to end"
+        ended = "runs failed, or it was interrupted" if kept.failed else "it was interrupted, or is about to end"
+        return f"no run: {ended}"
     process, host, since = kept.holder
     if kept.holder_known:
         return f"process {process} since {since}"

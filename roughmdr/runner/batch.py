@@ -48,6 +48,11 @@ class Beginning(NamedTuple):
     finished: bool
     """Whether that is just what is asked for."""
 
+    @property
+    def has_stored(self) -> bool:
+        """Whether task results are stored."""
+        return self.writer.store is not None and not self.writer.store.empty
+
     def missing(self, ranges: Sequence[RunRange], selected: list[tuple[int, int]]) -> list[RunRange]:
         """Return the runs that earlier ones have not left; append the rows of the others to ``selected``."""
         return [
@@ -66,10 +71,10 @@ def begun(plan: Plan, target: Path | None, share: Share | None = None, *, resume
     if target is not None:
         check_writable(target, plan.scene.inputs)
         check_ending(target, "result", NETCDF_ENDINGS)
-        target = destination(target) if share is None else share.beside(destination(target))
-    rounds = Rounds(plan)
+        target = destination(target)
+    rounds, own = Rounds(plan), target if target is None or share is None else share.beside(target)
     with ExitStack() as stack:
-        writer = CheckpointWriter(target, stack)
+        writer = CheckpointWriter(own, stack, of_share=share is not None)
         reusable = ReusableRows(rounds.keys, computed_variables(plan), keep_moments=plan.keeps_statistics)
         old: Labelled | None = None
         finished = False
@@ -149,13 +154,20 @@ class Batch:
                     ranges = self._rounds.next(self._collector)
             return self._finish()
 
-    def keep(self, ranges: Sequence[RunRange], *, quiet: bool) -> None:
-        """Compute some of the runs of the first round, which are kept beside the output."""
+    def keep(self, ranges: Sequence[RunRange], *, quiet: bool) -> list[str]:
+        """Compute some of the runs of the first round, and keep them beside the output; return why runs failed."""
+        failures = list[str]()
+
+        def note(result: TaskResult) -> None:
+            failed = result.diagnostics["status"] == FAILED
+            failures.extend(map(str, result.diagnostics["remark"][failed]))
+
         with interruptible(lambda: self._writer.begun, self._saved_message) as stop:
             self._writer.begin(self._plan.scene.toml, self._command)
             with progress(self._plan.scene.title, quiet=quiet) as display:
-                self._round(ranges, display, stop, lambda result: None)
+                self._round(ranges, display, stop, note)
             self._writer.flush()
+        return failures
 
     def _finish(self) -> Labelled:
         """Assemble the result and write it."""

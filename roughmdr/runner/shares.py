@@ -3,6 +3,7 @@
 import shlex
 from contextlib import ExitStack
 from pathlib import Path
+from typing import NamedTuple
 
 from roughmdr.batch.choose import plan_scene
 from roughmdr.batch.plan import Plan
@@ -18,85 +19,97 @@ from roughmdr.scene import read
 from roughmdr.schema.toml_text import parse_toml
 from roughmdr.storage.files import destination
 from roughmdr.storage.labelled import Labelled
-from roughmdr.variables import FAILED
 
 _NAMED = 8  # most shares that a message names
 
 
+class ComputedShare(NamedTuple):
+    """A share that has been computed."""
+
+    folder: Path | None
+    """The folder of its results; None where it has no runs, or all are in the result already."""
+    failures: list[str]
+    """Why runs failed, one text for each."""
+
+
 def compute_share(
     plan: Plan, target: Path, share: Share, backend: Backend, *, resume: bool, quiet: bool, command: str
-) -> None:
-    """Compute a share of the runs of a plan, and keep their results beside ``target``, which is not written.
+) -> ComputedShare:
+    """Compute a share of the runs of a plan and keep their results beside ``target``, which is not written.
 
-    SceneError where the runs depend on results, StoreError where the results cannot be kept.
+    SceneError where the runs depend on results, StoreError where the results cannot be kept or joined.
     """
     if plan.scene.accuracy is not None:
         raise SceneError("accuracy: how many runs there are follows from their results; a part of them cannot be told")
     backend.check()
     with begun(plan, target, share, resume=resume) as beginning:
         ranges = share.of(beginning.rounds.begin())
-        if ranges:
-            with at_work(beginning, backend, command, resume=resume, quiet=quiet, assembled=False) as batch:
-                batch.keep(ranges, quiet=quiet)
+        if beginning.finished or not (ranges or beginning.has_stored):
+            return ComputedShare(None, [])
+        with at_work(beginning, backend, command, resume=resume, quiet=quiet, assembled=False) as batch:
+            return ComputedShare(share.folder(destination(target)), batch.keep(ranges, quiet=quiet))
 
 
-def join(target: Path, backend: Backend, *, quiet: bool, command: str) -> Labelled:
+def join(target: Path, backend: Backend, *, fresh: bool = False, quiet: bool, command: str) -> Labelled:
     """Write the result of shares that are kept beside ``target``, and remove them; runs that failed are tried again.
 
-    StoreError where a share is missing, is not done, or is of another batch.
+    StoreError where a share is missing, is not done, or is of another batch, or where ``target`` holds another result
+    and is not replaced by a ``fresh`` one.
     """
     backend.check()
     target = destination(target)
     shares = Share.all_beside(target)
     if not shares:
-        raise StoreError(f"{target}: no part of it is here; expected folders such as {Share(1, 8).folder(target)}")
-    if len(counts := {share.total for share in shares}) > 1:
-        raise StoreError(f"{target}: there are parts of {' and of '.join(map(str, sorted(counts)))}; remove the others")
+        written = ", and the file is there: is it joined already?" if target.exists() else ""
+        expected = f"expected folders such as {Share(1, 8).folder(target)}"
+        raise StoreError(f"{target}: no part of it is here{written or '; ' + expected}")
+    if len(folders := {share.total: share.folder(target) for share in shares}) > 1:
+        raise StoreError(f"{' and '.join(map(str, folders.values()))}: are of other numbers of parts; remove one kind")
     with ExitStack() as stack:
-        stores = [stack.enter_context(locked_store(share.beside(target))) for share in shares]
+        stores = [stack.enter_context(locked_store(share.beside(target), of_share=True)) for share in shares]
         plan = plan_scene(read(parse_toml(_common_scene(stores))))
-        with begun(plan, target, resume=True) as beginning:
+        with begun(plan, target, resume=not fresh) as beginning:
+            beginning.writer.joined = stores
             if beginning.finished and beginning.old is not None:
-                result = beginning.old
-            else:
-                for store in stores:
-                    for reader in store.readers():
-                        beginning.reusable.add(reader)
-                _check_complete(beginning, target, shares[0].total, stores)
-                with at_work(beginning, backend, command, resume=True, quiet=quiet) as batch:
-                    result = batch.run(quiet=quiet)
-        if not (result.variables["status"].values == FAILED).any():
+                beginning.writer.clear_joined(beginning.old.attrs["scene"])
+                return beginning.old
             for store in stores:
-                store.clear()
-    return result
+                for reader in store.readers():
+                    beginning.reusable.add(reader)
+            _check_complete(beginning, target, shares[0].total, stores)
+            with at_work(beginning, backend, command, resume=not fresh, quiet=quiet) as batch:
+                return batch.run(quiet=quiet)
 
 
 def _common_scene(stores: list[CheckpointStore]) -> str:
     """Return the scene of all shares; StoreError where they have several, or other versions made one."""
     for store in stores:
         if store.scene and store.versions != versions():
-            raise StoreError(f"{store.folder}: was made with {store.versions}; this is {versions()}")
+            remedy = f"this is {versions()}; compute it again with --fresh, or join it with the former"
+            raise StoreError(f"{store.folder}: was made with {store.versions}; {remedy}")
     scenes = {store.scene: store.folder for store in stores if store.scene}
     if len(scenes) > 1:
-        raise StoreError(f"{' and '.join(map(str, scenes.values()))}: are parts of different scenes; remove the others")
+        raise StoreError(f"{' and '.join(map(str, scenes.values()))}: are parts of different scenes; remove one kind")
     for scene in scenes:
         return scene
     raise StoreError(f"{stores[0].folder}: keeps nothing yet")
 
 
-def _check_complete(beginning: Beginning, target: Path, count: int, stores: list[CheckpointStore]) -> None:
+def _check_complete(beginning: Beginning, target: Path, total: int, stores: list[CheckpointStore]) -> None:
     """Raise StoreError, which names the shares and how they are computed, unless all runs are there or have failed."""
-    kept = [read_kept(store.folder) for store in stores]
-    failed = set[tuple[str, int]]().union(*(each.failed for each in kept))
-    ranges, unfinished, runs = Rounds(beginning.plan).begin(), list[Share](), 0
-    for share in (Share(number, count) for number in range(1, count + 1)):
-        missing = beginning.missing(share.of(ranges), [])
-        lacking = {(one.key, run) for one in missing for run in range(one.first, one.last)} - failed
-        if lacking:
-            unfinished.append(share)
-            runs += len(lacking)
-    if unfinished:
-        named = ", ".join(f"{share.number}/{count}" for share in unfinished[:_NAMED])
-        more = f" and {len(unfinished) - _NAMED} more" if len(unfinished) > _NAMED else ""
-        remedy = f"roughmdr run SCENE -o {shlex.quote(str(target))} --part {unfinished[0].number}/{count}"
-        raise StoreError(f"{target}: {runs} runs of the parts {named}{more} are not done; compute them by: {remedy}")
+    failed = set[tuple[str, int]]().union(*(read_kept(store.folder).failed for store in stores))
+    ranges = Rounds(beginning.plan).begin()
+    missing = beginning.missing(ranges, [])
+    lacking = {(each.key, run) for each in missing for run in range(each.first, each.last)} - failed
+    if not lacking:
+        return
+    unfinished = [
+        share
+        for share in (Share(number, total) for number in range(1, total + 1))
+        if any((each.key, run) in lacking for each in share.of(ranges) for run in range(each.first, each.last))
+    ]
+    named = ", ".join(f"{share.number}/{total}" for share in unfinished[:_NAMED])
+    more = f" and {len(unfinished) - _NAMED} more" if len(unfinished) > _NAMED else ""
+    runs = f"{len(lacking)} run{'s' * (len(lacking) > 1)} of part{'s' * (len(unfinished) > 1)} {named}{more}"
+    remedy = f"roughmdr run SCENE -o {shlex.quote(str(target))} --part {unfinished[0].number}/{total}"
+    raise StoreError(f"{target}: {runs} not done; compute by: {remedy}")

@@ -3,6 +3,7 @@
 import os
 import re
 from collections.abc import Callable, Iterable, Mapping
+from contextlib import suppress
 from functools import partial, reduce
 from operator import getitem
 from pathlib import Path
@@ -205,7 +206,11 @@ def _to_plain(value: Any) -> Any:
         return str(value)
     if isinstance(value, np.ndarray | np.generic):
         return value.tolist()
-    return [_to_plain(entry) for entry in value] if isinstance(value, list | tuple) else as_text(value)
+    if isinstance(value, list | tuple):
+        return [_to_plain(entry) for entry in value]
+    with suppress(RoughmdrError):  # the reader of the key will refuse it
+        return as_text(value)
+    return value
 
 
 def _normalise(table: dict[str, Any], folder: Path) -> None:

@@ -70,8 +70,8 @@ class Quantity(Reader):
     def argument(self, name: str, value: Any) -> float:
         """Return the argument ``name`` of a Python function in SI; OutOfRange unless it is within the bounds."""
         unit = "" if self.dimension == DIMENSIONLESS else f" {self.dimension}"
-        value = as_text(value)
         try:
+            value = as_text(value)
             number = from_text(name, value, self.dimension) if isinstance(value, str) else float(value)
         except OutOfRange:
             raise

@@ -105,10 +105,12 @@ def quantity(value: object, dimension: str) -> float:
 
 
 def as_text(value: Any) -> Any:
-    """Return a quantity of pint as a string with a unit, one of several numbers as a list of them.
+    """Return a quantity of pint as a string with a unit, one of several numbers as a list of them, each in a list too.
 
-    Other values, and quantities of a dimension that no scene has, are returned as they are.
+    Other values are returned as they are. RoughmdrError where no quantity of a scene has its dimension.
     """
+    if isinstance(value, list | tuple):
+        return [as_text(each) for each in value]
     if not (hasattr(value, "magnitude") and hasattr(value, "is_compatible_with")):
         return value
     unit = f"{value.units:~C}"
@@ -116,12 +118,16 @@ def as_text(value: Any) -> Any:
         spelled = [f"1{base}" if base[0] == "/" else base for ((base, _), *_) in _BASES.values()]
         fitting = [base for base in spelled if value.is_compatible_with(base)]
         if not fitting:
-            return value
+            raise RoughmdrError(f"no quantity of a scene has the unit {value.units}")
         unit = fitting[-1]  # of J/m^2 and N/m the latter, which is read for both
         value = value.to(unit)
-    numbers = value.magnitude.tolist() if hasattr(value.magnitude, "tolist") else value.magnitude
+    return _with_unit(value.magnitude.tolist() if hasattr(value.magnitude, "tolist") else value.magnitude, unit)
+
+
+def _with_unit(numbers: Any, unit: str) -> Any:
+    """Return a number, or each of several, as a string with a unit; as it is where the unit is empty."""
     if isinstance(numbers, list):
-        return [f"{number!r} {unit}" for number in numbers] if unit else numbers
+        return [_with_unit(each, unit) for each in numbers]
     return f"{numbers!r} {unit}" if unit else numbers
 
 

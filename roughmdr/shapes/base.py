@@ -148,11 +148,10 @@ class Shape(ABC):
     def __post_init__(self) -> None:
         parameters = self.parameters
         self.parameter_set(set(parameters))
-        for name, given in parameters.items():
-            value = parameters[name] = as_text(given)
-            if isinstance(value, str):
+        for name, value in parameters.items():
+            if isinstance(value, str) or hasattr(value, "magnitude"):
                 try:
-                    parameters[name] = quantity(value, self.units[name])
+                    parameters[name] = quantity(as_text(value), self.units[name])
                 except RoughmdrError as error:
                     raise ShapeError(f"{self.name}: {name} is {short_repr(value)}: {error}") from None
             check_one(self.name, name, parameters[name])

@@ -17,6 +17,7 @@ from forms import large
 from hypothesis import given, strategies as st
 from scenes import scene
 
+from roughmdr.batch import tasks
 from roughmdr.batch.plan import make_plan
 from roughmdr.batch.resume.share import Share
 from roughmdr.batch.resume.store import locked_store
@@ -73,7 +74,7 @@ def test_joined_they_have_the_bits_of_one_run(tmp_path: Path, keep: str, total: 
     for number in random.Random(total).sample(range(1, total + 1), total):
         done = compute(parts, f"{number}/{total}", "--workers", 1 + number % 3)
         assert done.exit_code == 0, done.output
-        assert ("fewer runs than parts" if number > 15 else "this part is done") in done.output
+        assert ("the part has no runs" if number > 15 else "this part is done") in done.output
         assert not (parts / "out.nc").exists()
     assert roughmdr("join", parts / "out.nc").exit_code == 0
     with xr.open_dataset(one / "out.nc") as base:
@@ -117,15 +118,18 @@ def test_parts_that_are_missing_or_not_done_are_named(tmp_path: Path) -> None:
     assert f"no part of it is here; expected folders such as {out}.1-of-8.parts" in refused(roughmdr("join", out))
     for number in (1, 3):
         assert compute(tmp_path, f"{number}/4").exit_code == 0
+    assert f"what is finished is told by: roughmdr info {out}.1-of-4.parts" in refused(roughmdr("info", out))
     said = refused(roughmdr("join", out))
-    assert f"7 runs of the parts 2/4, 4/4 are not done; compute them by: roughmdr run SCENE -o {out} --part 2/4" in said
+    assert f"7 runs of parts 2/4, 4/4 not done; compute by: roughmdr run SCENE -o {out} --part 2/4" in said
     for number in (2, 4):
         assert compute(tmp_path, f"{number}/4").exit_code == 0
     Share(3, 4).folder(out).joinpath("000001.npz").write_bytes(b"")
-    assert "4 runs of the parts 3/4 are not done" in refused(roughmdr("join", out))
+    assert "4 runs of part 3/4 not done" in refused(roughmdr("join", out))
     assert compute(tmp_path, "3/4").exit_code == 0
+    assert "this part is done" in roughmdr("info", f"{out}.3-of-4.parts").output
     assert roughmdr("join", out).exit_code == 0
     assert_clean(tmp_path)
+    assert "no part of it is here, and the file is there: is it joined already?" in refused(roughmdr("join", out))
 
 
 def test_parts_of_other_batches_are_refused(tmp_path: Path) -> None:
@@ -137,11 +141,58 @@ def test_parts_of_other_batches_are_refused(tmp_path: Path) -> None:
     assert "are parts of different scenes" in refused(roughmdr("join", out))
     assert compute(tmp_path, "2/2", "--fresh").exit_code == 0
     assert compute(tmp_path, "2/3").exit_code == 0
-    assert "there are parts of 2 and of 3; remove the others" in refused(roughmdr("join", out))
+    said = f"{out}.2-of-2.parts and {out}.2-of-3.parts: are of other numbers of parts"
+    assert said in refused(roughmdr("join", out))
     shutil.rmtree(Share(2, 3).folder(out))
     with locked_store(Share(2, 2).beside(out)):
         assert f"{out}.2-of-2: another run is writing it (process {os.getpid()}" in refused(roughmdr("join", out))
     assert roughmdr("join", out).exit_code == 0
+
+
+def test_more_realisations_are_those_of_one_run_of_all(tmp_path: Path) -> None:
+    """Parts that are computed again under a scene that asks for more go on, and the result is that of the new scene."""
+    more = SWEPT | {"batch": {"realizations": 9}}
+    for name, table in (("one", more), ("parts", SWEPT)):
+        write_scene(tmp_path / name, table)
+    one, parts = tmp_path / "one", tmp_path / "parts"
+    assert roughmdr("run", one / "scene.toml", "-o", one / "out.nc").exit_code == 0
+    for table in (SWEPT, more):
+        write_scene(parts, table)
+        for number in (1, 2, 3):
+            assert compute(parts, f"{number}/3").exit_code == 0
+    assert roughmdr("join", parts / "out.nc").exit_code == 0
+    with xr.open_dataset(one / "out.nc") as base:
+        assert_result(parts, base.load())
+    assert_clean(parts)
+
+
+def test_a_result_that_is_there_is_extended_or_refused(tmp_path: Path) -> None:
+    write_scene(tmp_path, SWEPT)
+    out = tmp_path / "out.nc"
+    assert roughmdr("run", tmp_path / "scene.toml", "-o", out).exit_code == 0
+    assert "the output holds them" in compute(tmp_path, "1/2").output
+    assert "is 8" in refused(compute(tmp_path, "1/2", "--set", "seed=8"))
+    for number in (1, 2):
+        assert compute(tmp_path, f"{number}/2", "--set", "seed=8", "--fresh").exit_code == 0
+    assert "is 8" in refused(roughmdr("join", out))
+    assert roughmdr("join", out, "--fresh").exit_code == 0
+    assert_clean(tmp_path)
+    for number in (1, 2):
+        done = compute(tmp_path, f"{number}/2", "--set", "seed=8", "--set", "batch.realizations=7")
+        assert done.exit_code == 0, done.output
+    assert roughmdr("join", out).exit_code == 0
+    assert_clean(tmp_path)
+    with xr.open_dataset(out) as result:
+        assert result.sizes["realization"] == 7
+
+
+def test_an_output_that_is_a_link(tmp_path: Path) -> None:
+    (tmp_path / "scratch").mkdir()
+    write_scene(tmp_path, SWEPT)
+    (tmp_path / "out.nc").symlink_to(tmp_path / "scratch" / "real.nc")
+    assert "this part is done" in compute(tmp_path, "1/1").output
+    assert roughmdr("join", tmp_path / "out.nc").exit_code == 0
+    assert [path.name for path in (tmp_path / "scratch").iterdir()] == ["real.nc"]
 
 
 def test_how_far_a_part_is(tmp_path: Path) -> None:
@@ -159,9 +210,28 @@ def test_how_many_runs_an_error_takes_cannot_be_parted(tmp_path: Path) -> None:
     assert "accuracy: how many runs there are follows from their results" in refused(compute(tmp_path, "1/2"))
 
 
-def test_runs_that_failed_are_tried_again(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    from roughmdr.batch import tasks
+def test_a_part_all_of_whose_runs_fail(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    write_scene(tmp_path, SWEPT)
+    out, simulate = tmp_path / "out.nc", tasks.simulate_realization
 
+    def failing(given: Any, path: Any, realization: int, *others: Any) -> Any:
+        if given.material.modulus == 1e9:
+            raise OutOfRange("it cannot be")
+        return simulate(given, path, realization, *others)
+
+    monkeypatch.setattr(tasks, "simulate_realization", failing)
+    ends = [compute(tmp_path, f"{number}/15", "--quiet") for number in range(1, 16)]
+    assert sorted(each.exit_code for each in ends) == [0] * 10 + [1] * 5
+    assert all(("1 runs failed: OutOfRange: it cannot be" in each.stderr) == each.exit_code for each in ends)
+    told = json.loads(compute(tmp_path, "1/15", "--json").stdout)
+    assert told["faults"][0]["message"] == "1 runs failed: OutOfRange: it cannot be"
+    assert (told["parts"]["done"], told["parts"]["failed"], told["parts"]["total"]) == (0, 1, 1)
+    assert roughmdr("join", out).exit_code == 1
+    with xr.open_dataset(out) as result:
+        assert result.status.sum() == 5
+
+
+def test_runs_that_failed_are_tried_again(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     write_scene(tmp_path, SWEPT)
     out, simulate = tmp_path / "out.nc", tasks.simulate_realization
 

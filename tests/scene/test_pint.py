@@ -65,7 +65,7 @@ def test_scenes_and_functions_take_them() -> None:
     )
     depths = [
         rm.indent(text, effective_modulus=2e6, force=force).indentation
-        for force in (np.array([1, 2]) * PINT.mN, [1e-3, 2e-3])
+        for force in (np.array([1, 2]) * PINT.mN, [1 * PINT.mN, 2 * PINT.mN])
     ]
     np.testing.assert_array_equal(*depths)
 
@@ -76,6 +76,10 @@ def test_a_wrong_one_is_refused(wrong: Any) -> None:
         read(scene(material={"effective_modulus": wrong}))
     with pytest.raises(rm.OutOfRange, match="effective_modulus is"):
         rm.pull_off(rm.Paraboloid(radius=1e-6), effective_modulus=wrong, work=0.05)
+    with pytest.raises(rm.OutOfRange, match="force is"):
+        rm.indent(rm.Paraboloid(radius=1e-6), effective_modulus=1e6, force=[wrong, wrong])
+    with pytest.raises(rm.ShapeError, match="radius is"):
+        rm.Paraboloid(radius=PINT.Quantity(1, "kg"))
 
 
 def test_units_of_results_are_read() -> None:

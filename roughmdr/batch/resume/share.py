@@ -8,9 +8,11 @@ from typing import NamedTuple, Self
 from roughmdr.batch.resume.store import store_folder
 from roughmdr.batch.tasks import RunRange
 from roughmdr.errors import RoughmdrError
+from roughmdr.storage.files import convert_os_errors
 
-_TEXT = re.compile(r"([1-9][0-9]*)/([1-9][0-9]*)")
-_NAME = re.compile(r"(.+)\.([1-9][0-9]*)-of-([1-9][0-9]*)")
+_NUMBER = "([1-9][0-9]{0,4})"
+_TEXT = re.compile(f"{_NUMBER}/{_NUMBER}")
+_NAME = re.compile(rf"(.+)\.{_NUMBER}-of-{_NUMBER}")
 
 
 class Share(NamedTuple):
@@ -42,7 +44,8 @@ class Share(NamedTuple):
         """Return the shares whose results are kept beside an output, in order."""
         if not target.parent.is_dir():
             return []
-        folders = (path for path in target.parent.iterdir() if path.name.endswith(".parts") and path.is_dir())
+        with convert_os_errors(target.parent):
+            folders = [path for path in target.parent.iterdir() if path.name.endswith(".parts") and path.is_dir()]
         named = (cls.split_name(path.with_suffix("")) for path in folders)
         return sorted(share for output, share in named if share is not None and output.name == target.name)
 

@@ -55,13 +55,14 @@ def manifest_lines(content: bytes) -> Iterator[dict[str, Any]]:
 class CheckpointStore:
     """The folder, while this process holds its lock."""
 
-    def __init__(self, folder: Path) -> None:
-        self.folder = folder
+    def __init__(self, folder: Path, *, of_share: bool = False) -> None:
+        self.folder, self._of_share = folder, of_share
         self.scene = ""
-        """TOML text of the scene of the batch that began the folder."""
+        """TOML text of the scene of the batch that began the folder; of a share, of the last that went on there."""
         self.versions = ""
         self.replaces = ""
         """Stamp of the file that this batch may replace (see ``CheckpointWriter``); empty for none."""
+        self._has_failed = False
         self._lines = self._read_manifest()
         self._next = 1 + max((int(line["file"][:-4]) for line in self._lines), default=0)
 
@@ -70,9 +71,14 @@ class CheckpointStore:
         """Whether no task result is stored."""
         return self._next == 1
 
+    @property
+    def removable(self) -> bool:
+        """Whether the folder tells nothing that is needed: of a share also which runs failed."""
+        return self.empty and not (self._of_share and self._has_failed)
+
     def begin(self, scene: str, versions: str, replaces: str, command: str) -> None:
         """Note the batch that the folder is for, if it is a new one."""
-        if not self.scene:
+        if not self.scene or (self._of_share and self.scene != scene):
             self.scene, self.versions, self.replaces = scene, versions, replaces
             began = datetime.now(UTC).isoformat(timespec="seconds")
             decisive = {"scene": scene, "versions": versions, "replaces": replaces}
@@ -114,6 +120,7 @@ class CheckpointStore:
     def note_failed(self, runs: list[tuple[str, int]], remark: str) -> None:
         """Note runs that failed, as key of the cell and realisation, and why; the next batch repeats them."""
         self._append({"failed": runs, "remark": remark})
+        self._has_failed = True
 
     def clear(self) -> None:
         """Remove all that was written to the folder but the lock, since the folder stays locked while it exists."""
@@ -122,7 +129,7 @@ class CheckpointStore:
             for path in self.folder.iterdir():
                 if _OWN_FILES.fullmatch(path.name):
                     shutil.rmtree(path) if path.is_dir() and not path.is_symlink() else path.unlink()
-        self.scene, self.replaces, self._lines, self._next = "", "", [], 1
+        self.scene, self.replaces, self._has_failed, self._lines, self._next = "", "", False, [], 1
 
     def _read_manifest(self) -> list[dict[str, Any]]:
         """Return the lines of the manifest about task results; one that was not finished is cut off."""
@@ -140,6 +147,8 @@ class CheckpointStore:
                     self.scene, self.versions, self.replaces = scene, versions, replaces
                 case {"file": str(), "sha256": str()}:
                     lines.append(line)
+                case {"failed": list()}:
+                    self._has_failed = True
         return lines
 
     def _append(self, line: dict[str, Any]) -> None:
@@ -157,10 +166,10 @@ class CheckpointStore:
 
 
 @contextmanager
-def locked_store(target: Path) -> Iterator[CheckpointStore]:
-    """Open the store of a result, made if need be, for this process alone; StoreError where another one holds its lock.
+def locked_store(target: Path, *, of_share: bool = False) -> Iterator[CheckpointStore]:
+    """Open the store of a result or a share, made if need be, for this process alone.
 
-    The folder is removed at the end if nothing is stored in it.
+    The folder is removed at the end if it tells nothing. StoreError where another process holds its lock.
     """
     folder = store_folder(target)
     with convert_os_errors(folder):
@@ -170,11 +179,11 @@ def locked_store(target: Path) -> Iterator[CheckpointStore]:
             for path in folder.glob("*.tmp"):
                 if _OWN_FILES.fullmatch(path.name):
                     path.unlink()
-            store = CheckpointStore(folder)
+            store = CheckpointStore(folder, of_share=of_share)
         try:
             yield store
         finally:
-            if store.empty:
+            if store.removable:
                 with suppress(OSError):
                     (folder / MANIFEST).unlink()
     finally:
@@ -182,6 +191,8 @@ def locked_store(target: Path) -> Iterator[CheckpointStore]:
             with suppress(OSError):
                 (folder / LOCK).unlink()
                 folder.rmdir()
+        with suppress(OSError):
+            os.ftruncate(lock, 0)  # no run is at work any more, for those too who do not see the lock
         os.close(lock)
 
 

@@ -24,14 +24,16 @@ class CheckpointWriter:
     Nothing is written without a ``target``; there is no folder if its name would be too long.
     """
 
-    def __init__(self, target: Path | None, stack: ExitStack) -> None:
+    def __init__(self, target: Path | None, stack: ExitStack, *, of_share: bool = False) -> None:
         self.target, self._stack = target, stack
         self.store: CheckpointStore | None = None
+        self.joined: list[CheckpointStore] = []
+        """Stores of shares, whose results are in the result as well."""
         self._cleared, self._replaces = False, ""
         self._thread: ThreadPoolExecutor | None = None
         self._pending: deque[Future[None]] = deque()
         if target is not None and len(os.fsencode(store_folder(target).name)) <= _MAX_NAME:
-            self.store = stack.enter_context(locked_store(target))
+            self.store = stack.enter_context(locked_store(target, of_share=of_share))
 
     def clear(self) -> None:
         """Remove the checkpoints of an earlier run; the file that is at the output now, if one is, may be replaced."""
@@ -89,8 +91,16 @@ class CheckpointWriter:
         if folder is not None and folder.stat().st_dev != self.target.parent.stat().st_dev:
             folder = None  # a result cannot be renamed from one disk to another
         write_netcdf(result, self.target, folder)
-        if self.store is not None and complete:
-            self.store.clear()
+        if complete:
+            if self.store is not None:
+                self.store.clear()
+            self.clear_joined()
+
+    def clear_joined(self, scene: str | None = None) -> None:
+        """Remove what the stores of shares hold, or of those of a scene."""
+        for store in self.joined:
+            if scene is None or store.scene in ("", scene):
+                store.clear()
 
     @property
     def saved_message(self) -> str:
