@@ -36,8 +36,10 @@ def info(ctx: click.Context, result: Path, cells: bool, follow: bool, as_json: b
         return
     if _is_missing(result):
         from roughmdr.batch.resume.share import Share
+        from roughmdr.storage.files import destination
 
-        shares = [share.folder(result) for share in Share.all_beside(result)]
+        output = destination(result)
+        shares = [share.folder(output) for share in Share.all_beside(output)]
         for parts in (result.with_name(f"{result.name}.parts"), *shares):
             if _is_folder(parts):
                 raise StoreError(f"{result}: is not written yet; what is finished is told by: roughmdr info {parts}")

@@ -108,7 +108,7 @@ def _print_share(ctx: click.Context, done: "ComputedShare", *, quiet: bool, as_j
         faults = [fault(failed)] if failed else []
         print_document(ctx, INCOMPLETE if failed else 0, faults=faults, parts=kept and parts_table(kept))
     elif not quiet:
-        nothing = "kept         nothing: the part has no runs, or the output holds them"
+        nothing = "kept         nothing: there are fewer runs than parts"
         print_text(nothing if kept is None else describe_parts(kept))
     elif failed:
         print_text(f"roughmdr: {failed}", err=True)

@@ -18,14 +18,13 @@ def describe_parts(kept: Kept, *, cells: bool = False) -> str:
     lines = [] if kept.share is None else [("part", "{} of {}".format(*kept.share))]
     lines += [("kept", _counted(kept, progress))]
     lines += _cells(kept, progress, len(progress.done) if cells else _MAX_CELLS)
-    done = kept.share is not None and progress.total is not None and kept.runs >= progress.total
-    if kept.failed and not done:
+    if kept.failed:
         reason = printable(kept.remark.partition("\n")[0])
         lines.append(("failed", f"{len(kept.failed)} runs ({reason}); the next batch repeats them"))
     if kept.began:
         lines.append(("begun", f"{kept.began}; something was kept last at {kept.last}"))
-    lines.append(("at work", "no run: this part is done" if done and kept.holder is None else _at_work(kept)))
-    if done:
+    lines.append(("at work", "no run: this part is done" if kept.complete and kept.holder is None else _at_work(kept)))
+    if kept.complete:
         lines.append(("when all are", printable(f"roughmdr join {shlex.quote(str(kept.output))}")))
     else:
         lines.append(("goes on by", printable(kept.continued_by)))

@@ -48,11 +48,6 @@ class Beginning(NamedTuple):
     finished: bool
     """Whether that is just what is asked for."""
 
-    @property
-    def has_stored(self) -> bool:
-        """Whether task results are stored."""
-        return self.writer.store is not None and not self.writer.store.empty
-
     def missing(self, ranges: Sequence[RunRange], selected: list[tuple[int, int]]) -> list[RunRange]:
         """Return the runs that earlier ones have not left; append the rows of the others to ``selected``."""
         return [
@@ -78,11 +73,11 @@ def begun(plan: Plan, target: Path | None, share: Share | None = None, *, resume
         reusable = ReusableRows(rounds.keys, computed_variables(plan), keep_moments=plan.keeps_statistics)
         old: Labelled | None = None
         finished = False
-        if target is not None and resume:
-            old = None if writer.may_replace(plan.scene.toml) else find_previous(target)
+        if own is not None and resume:
+            old = None if share is not None or writer.may_replace(plan.scene.toml) else find_previous(own)
             finished = old is not None and is_finished(old, plan, rounds.keys)
             if not finished:
-                reuse(target, old, writer.store, plan, reusable)
+                reuse(own, old, writer.store, plan, reusable)
             elif old is not None and writer.store is not None and writer.store.scene in ("", old.attrs["scene"]):
                 writer.store.clear()  # the run that wrote the result was killed before it could
         yield Beginning(plan, rounds, writer, reusable, old, finished)
@@ -167,6 +162,8 @@ class Batch:
             with progress(self._plan.scene.title, quiet=quiet) as display:
                 self._round(ranges, display, stop, note)
             self._writer.flush()
+        if not failures and self._writer.store is not None:
+            self._writer.store.note_complete()
         return failures
 
     def _finish(self) -> Labelled:

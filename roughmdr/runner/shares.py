@@ -27,7 +27,7 @@ class ComputedShare(NamedTuple):
     """A share that has been computed."""
 
     folder: Path | None
-    """The folder of its results; None where it has no runs, or all are in the result already."""
+    """The folder of its results; None where it has no runs."""
     failures: list[str]
     """Why runs failed, one text for each."""
 
@@ -35,16 +35,19 @@ class ComputedShare(NamedTuple):
 def compute_share(
     plan: Plan, target: Path, share: Share, backend: Backend, *, resume: bool, quiet: bool, command: str
 ) -> ComputedShare:
-    """Compute a share of the runs of a plan and keep their results beside ``target``, which is not written.
+    """Compute a share of the runs of a plan, and keep their results beside ``target``, which is not looked at.
 
-    SceneError where the runs depend on results, StoreError where the results cannot be kept or joined.
+    SceneError where the runs depend on results, StoreError where the results cannot be kept.
     """
     if plan.scene.accuracy is not None:
         raise SceneError("accuracy: how many runs there are follows from their results; a part of them cannot be told")
     backend.check()
     with begun(plan, target, share, resume=resume) as beginning:
         ranges = share.of(beginning.rounds.begin())
-        if beginning.finished or not (ranges or beginning.has_stored):
+        if not ranges:
+            if not resume:
+                beginning.writer.clear()
+            beginning.writer.begin(plan.scene.toml, command)  # for runs that an earlier scene had in the share
             return ComputedShare(None, [])
         with at_work(beginning, backend, command, resume=resume, quiet=quiet, assembled=False) as batch:
             return ComputedShare(share.folder(destination(target)), batch.keep(ranges, quiet=quiet))
@@ -69,13 +72,14 @@ def join(target: Path, backend: Backend, *, fresh: bool = False, quiet: bool, co
         stores = [stack.enter_context(locked_store(share.beside(target), of_share=True)) for share in shares]
         plan = plan_scene(read(parse_toml(_common_scene(stores))))
         with begun(plan, target, resume=not fresh) as beginning:
-            beginning.writer.joined = stores
-            if beginning.finished and beginning.old is not None:
-                beginning.writer.clear_joined(beginning.old.attrs["scene"])
+            for reader in (reader for store in stores for reader in store.readers()):
+                beginning.reusable.add(reader)
+            if beginning.finished and beginning.old is not None:  # the join that wrote it was killed before its end
+                cells = [(method.key, method.realizations) for method in beginning.rounds.methods]
+                for store in [] if beginning.reusable.has_unused(cells) else stores:
+                    store.clear()
                 return beginning.old
-            for store in stores:
-                for reader in store.readers():
-                    beginning.reusable.add(reader)
+            beginning.writer.joined = stores
             _check_complete(beginning, target, shares[0].total, stores)
             with at_work(beginning, backend, command, resume=not fresh, quiet=quiet) as batch:
                 return batch.run(quiet=quiet)
@@ -89,7 +93,9 @@ def _common_scene(stores: list[CheckpointStore]) -> str:
             raise StoreError(f"{store.folder}: was made with {store.versions}; {remedy}")
     scenes = {store.scene: store.folder for store in stores if store.scene}
     if len(scenes) > 1:
-        raise StoreError(f"{' and '.join(map(str, scenes.values()))}: are parts of different scenes; remove one kind")
+        raise StoreError(
+            f"{' and '.join(map(str, scenes.values()))}: are parts of different scenes; compute one kind again"
+        )
     for scene in scenes:
         return scene
     raise StoreError(f"{stores[0].folder}: keeps nothing yet")

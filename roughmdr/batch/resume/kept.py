@@ -47,6 +47,7 @@ class Kept(NamedTuple):
     """Runs by the keys of their cells; None where an earlier version has not noted them."""
     failed: frozenset[tuple[str, int]]  # key and realisation; the next run repeats them
     remark: str  # why the first of them failed
+    complete: bool  # whether all runs of a share are kept
     holder: Holder | None  # None where no run is at work
     holder_known: bool  # whether that can be told on this system
 
@@ -99,12 +100,15 @@ def read_kept(folder: Path) -> Kept:
     if not content and not (folder / LOCK).exists():
         raise StoreError(f"{folder}: holds no runs; if a batch was at work here it has ended, see {folder.stem}")
     batch, runs, by_key = dict[str, str](), 0, Counter[str]()
-    failed, remark, counted = set[tuple[str, int]](), "", True
+    failed, remark, counted, complete = set[tuple[str, int]](), "", True, False
     for line in manifest_lines(content):
         match line:
             case {"scene": str(scene), "versions": str(made_with)}:
                 batch = {"scene": scene, "versions": made_with}
                 batch |= {name: str(line.get(name, "")) for name in ("command", "began")}
+                complete = False
+            case {"complete": True}:
+                complete = True
             case {"file": str(), "realizations": int(count)}:
                 runs += count
                 cells = line.get("cells")
@@ -116,9 +120,9 @@ def read_kept(folder: Path) -> Kept:
                 remark = remark or why
     scene, made_with, command, began = (batch.get(name, "") for name in ("scene", "versions", "command", "began"))
     kept_by_key = by_key if counted else None
-    return Kept(
-        folder, scene, made_with, command, began, last, runs, kept_by_key, frozenset(failed), remark, holder, known
-    )
+    failures = frozenset[tuple[str, int]]() if complete else frozenset(failed)
+    told = scene, made_with, command, began, last, runs, kept_by_key, failures, remark, complete
+    return Kept(folder, *told, holder, known)
 
 
 def progress_of(kept: Kept) -> Progress:

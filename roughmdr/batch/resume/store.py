@@ -78,7 +78,7 @@ class CheckpointStore:
 
     def begin(self, scene: str, versions: str, replaces: str, command: str) -> None:
         """Note the batch that the folder is for, if it is a new one."""
-        if not self.scene or (self._of_share and self.scene != scene):
+        if not self.scene or (self._of_share and (self.scene, self.versions) != (scene, versions)):
             self.scene, self.versions, self.replaces = scene, versions, replaces
             began = datetime.now(UTC).isoformat(timespec="seconds")
             decisive = {"scene": scene, "versions": versions, "replaces": replaces}
@@ -121,6 +121,10 @@ class CheckpointStore:
         """Note runs that failed, as key of the cell and realisation, and why; the next batch repeats them."""
         self._append({"failed": runs, "remark": remark})
         self._has_failed = True
+
+    def note_complete(self) -> None:
+        """Note that all runs of a share are kept."""
+        self._append({"complete": True})
 
     def clear(self) -> None:
         """Remove all that was written to the folder but the lock, since the folder stays locked while it exists."""
@@ -187,8 +191,8 @@ def locked_store(target: Path, *, of_share: bool = False) -> Iterator[Checkpoint
                 with suppress(OSError):
                     (folder / MANIFEST).unlink()
     finally:
-        if {path.name for path in folder.glob("*")} == {LOCK}:
-            with suppress(OSError):
+        with suppress(OSError):
+            if {path.name for path in folder.glob("*")} == {LOCK}:
                 (folder / LOCK).unlink()
                 folder.rmdir()
         with suppress(OSError):

@@ -91,16 +91,8 @@ class CheckpointWriter:
         if folder is not None and folder.stat().st_dev != self.target.parent.stat().st_dev:
             folder = None  # a result cannot be renamed from one disk to another
         write_netcdf(result, self.target, folder)
-        if complete:
-            if self.store is not None:
-                self.store.clear()
-            self.clear_joined()
-
-    def clear_joined(self, scene: str | None = None) -> None:
-        """Remove what the stores of shares hold, or of those of a scene."""
-        for store in self.joined:
-            if scene is None or store.scene in ("", scene):
-                store.clear()
+        for store in [*([] if self.store is None else [self.store]), *self.joined] if complete else []:
+            store.clear()
 
     @property
     def saved_message(self) -> str:
