@@ -64,9 +64,13 @@ def test_nothing_in_a_file_reaches_a_terminal(folder: Path, name: str, failed: b
 
 
 @pytest.mark.few(2)
-@pytest.mark.parametrize("every", [False, large(True)])
 @pytest.mark.parametrize(
-    "name", ["curves", *(large(name) for name in RESULTS if name != "curves"), "ensemble", "table", "map"]
+    ("name", "every"),
+    [
+        *((name, False) for name in ("curves", "ensemble", "table", "map")),
+        *(large(name, False) for name in RESULTS if name != "curves"),
+        *(large(name, True) for name in ("curves", "ensemble")),
+    ],
 )
 def test_nothing_in_what_is_refused_reaches_a_terminal(folder: Path, name: str, every: bool) -> None:
     """One word after the other is replaced: attributes, names of variables and dimensions, texts.

@@ -70,7 +70,6 @@ def method_of(found: xr.Dataset) -> str:
         ({"contact_area": "20 %", "at_pressure": "10 MPa"}, "independent asperities"),
         (AREA, "pairs"),
         large({"stiffness": "2 %", "at_force": "0.1 N"}, "pairs"),
-        large({"separation": "4 nm", "at_pressure": "5 MPa"}, "pairs"),
         ({"force": "40 %", "at_separation": "1 sigma"}, "independent asperities"),
     ],
 )
