@@ -95,7 +95,7 @@ def at_work(
     plan, writer = beginning.plan, beginning.writer
     with compiling(lambda: tell_compiling(plan.scene.title, quiet=quiet)):
         check_foreseen(plan)
-        runs = sum(method.realizations for method in beginning.rounds.methods)  # of the first round
+        runs = sum(method.realizations for method in beginning.rounds.methods)  # runs in the first round
         if assembled:
             remedy = "fewer steps or realizations, or output.keep = 'statistics', take less"
             check_memory(result_bytes(plan, runs), "the run", remedy)

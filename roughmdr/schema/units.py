@@ -119,7 +119,7 @@ def as_text(value: Any) -> Any:
         fitting = [base for base in spelled if value.is_compatible_with(base)]
         if not fitting:
             raise RoughmdrError(f"no quantity of a scene has the unit {value.units}")
-        unit = fitting[-1]  # of J/m^2 and N/m the latter, which is read for both
+        unit = fitting[-1]  # N/m rather than J/m^2, since it is read for both
         value = value.to(unit)
     return _with_unit(value.magnitude.tolist() if hasattr(value.magnitude, "tolist") else value.magnitude, unit)
 

@@ -81,7 +81,7 @@ class Progress(NamedTuple):
 
     scene: Scene | None  # None where it cannot be read here, for lack of a file for example
     plan: Plan | None  # None likewise, or where other versions began the batch
-    realizations: int | None  # of a cell; with [accuracy] those of its first round; None for a share
+    realizations: int | None  # realisations a cell, with [accuracy] in its first round; None for a share
     done: list[int]  # of each cell of the plan
     failed: list[int]
     total: int | None  # runs to be computed; None where that is not known, as with [accuracy]
@@ -108,7 +108,7 @@ def read_kept(folder: Path) -> Kept:
                 batch |= {name: str(line.get(name, "")) for name in ("command", "began")}
                 complete = False
             case {"complete": True}:
-                complete = True
+                complete, failed, remark = True, set(), ""
             case {"file": str(), "realizations": int(count)}:
                 runs += count
                 cells = line.get("cells")
@@ -120,8 +120,7 @@ def read_kept(folder: Path) -> Kept:
                 remark = remark or why
     scene, made_with, command, began = (batch.get(name, "") for name in ("scene", "versions", "command", "began"))
     kept_by_key = by_key if counted else None
-    failures = frozenset[tuple[str, int]]() if complete else frozenset(failed)
-    told = scene, made_with, command, began, last, runs, kept_by_key, failures, remark, complete
+    told = scene, made_with, command, began, last, runs, kept_by_key, frozenset(failed), remark, complete
     return Kept(folder, *told, holder, known)
 
 
