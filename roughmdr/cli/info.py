@@ -97,8 +97,12 @@ def _follow(result: Path) -> Path:
 
 
 def _is_missing(path: Path) -> bool:
-    with suppress(OSError):  # a name that is too long
-        return not path.exists()
+    try:
+        path.stat()
+    except (FileNotFoundError, NotADirectoryError):
+        return True
+    except (OSError, ValueError):  # a circle of links, or a name that is too long or has NUL: reading tells which
+        return False
     return False
 
 
