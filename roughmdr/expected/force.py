@@ -13,7 +13,7 @@ from roughmdr.errors import OutOfRange
 from roughmdr.expected.compute import KERNEL_ERROR, as_ensemble, warnings_of
 from roughmdr.expected.converge import converge_at_kinks
 from roughmdr.expected.detached import PartialRule, sums_of
-from roughmdr.expected.node import MeanProblem, set_up
+from roughmdr.expected.node import MeanProblem, QuadratureNode, set_up
 from roughmdr.kernels.adhesion import Adhesion
 from roughmdr.numerics.arguments import Floats, Ints
 
@@ -28,6 +28,15 @@ class ForceRule(NamedTuple):
     """Error bound of the force over its largest value."""
 
 
+class Changes(NamedTuple):
+    """Where adhering asperities of one height make and lose contact, in the order of the path."""
+
+    step: Ints
+    """The steps after which they do."""
+    control: Floats
+    """The separation [m], or on a machine the position of the far end."""
+
+
 class Force(NamedTuple):
     """The force of the expected law along a path."""
 
@@ -35,8 +44,8 @@ class Force(NamedTuple):
     """[N]"""
     error: float
     """Error bound over the largest force."""
-    touching: Ints
-    """Number of populations of one height in contact at each step; 1 in contact and 0 out of it where shapes are drawn.
+    changes: Changes
+    """Of populations of one height and, where shapes are drawn, of first touch alone, for they lose contact one by one.
     """
     rule: ForceRule | None
     """The rule by which it was found; None where steps had rules of their own."""
@@ -74,8 +83,20 @@ def expected_force(
     largest = float(np.abs(total[FORCE]).max())
     error = KERNEL_ERROR + rule.error + (float(total[ERROR].max()) / largest if largest > 0.0 else 0.0)
     warnings_of(error, 0.0)
-    touching = (total[FORCE] != 0.0).astype(np.int64) * (not alike)
-    for node in nodes if alike else ():
-        if node.heights.all_equal:
-            touching[node.in_contact.at_steps(np.ones(touching.size, dtype=np.bool_)).around(0.0).step] += 1
-    return Force(source.expected_count * total[FORCE], error, touching, rule if split is None else None)
+    changes = _changes(path, nodes if alike else nodes[:1], of_loss=alike)
+    return Force(source.expected_count * total[FORCE], error, changes, rule if split is None else None)
+
+
+def _changes(path: LoadingPath, nodes: list[QuadratureNode], *, of_loss: bool) -> Changes:
+    """Return where nodes whose heights are all equal make contact and, if asked for, lose it."""
+    found = list[tuple[int, float]]()
+    for node in nodes:
+        if node.heights.all_equal and node.contact.kernels.adhesive:
+            touching = np.zeros(path.separation.size, dtype=np.int8)
+            touching[node.in_contact.around(0.0).step] = 1
+            made, lost = (np.flatnonzero(np.diff(touching) == sign).tolist() for sign in (1, -1))
+            found += [(step, node.heights.origin - node.contact.onset) for step in made]
+            found += [(step, node.heights.origin + node.contact.depth[0]) for step in lost if of_loss]
+    ways = np.diff(path.separation)
+    found.sort(key=lambda each: (each[0], ways[each[0]] * each[1]))
+    return Changes(np.array([step for step, _ in found], dtype=np.int64), np.array([place for _, place in found]))

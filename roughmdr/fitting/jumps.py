@@ -10,10 +10,8 @@ from collections.abc import Iterator
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from roughmdr.errors import RoughmdrError
-from roughmdr.fitting.model import Model, Point, changes_of
+from roughmdr.fitting.model import Model, Point
 from roughmdr.fitting.slopes import slopes_of
 from roughmdr.numerics.arguments import Floats
 
@@ -26,10 +24,7 @@ _NEWTON, _ITERATIONS, _HALVINGS = 4, 20, 8
 _LONGEST = 1.0  # longest change of x in an iteration
 _LESS = 1e-11  # relative decrease of the sum of squares below which iterations end
 _LEAST_GAIN = 1e-7  # relative decrease of the sum of squares by which another interval is better
-_LITTLE = 1e-5  # change of x in differences of the positions of jumps
-_FINER, _REFINEMENTS = 64, 6  # steps that replace one to locate a jump, and how often the law is followed at most
-_RESOLUTION = 6e-8  # width within which a jump is located, over the step: 64^-4
-_ASIDE = 2e-3  # how far from the last place it is sought first, over the step: ten times the change of that by _LITTLE
+_LITTLE = 1e-6  # change of x in differences of the positions of jumps
 _FARTHEST = 2  # steps to the neighbours of an interval
 
 
@@ -44,58 +39,12 @@ class Jumps(NamedTuple):
 
 def jumps_at(model: Model, x: Floats) -> Jumps | None:
     """Return where the contact is made and lost; None where the law, there or nearby, has no or other jumps."""
-    around = model.point(x).jumps
-    if not around:
-        return None
+    here = model.point(x)
     changes = np.where(x + _LITTLE > model.bounds[1], -_LITTLE, _LITTLE)
-    here = _control_of_jumps(model, x, around)
-    found = [_control_of_jumps(model, each, around, here) for each in x + np.diag(changes)] if here.size else []
-    if not found or any(each.size != here.size for each in found):
+    found = [model.point_at(each).control for each in x + np.diag(changes)] if here.jumps else []
+    if not found or any(each.size != here.control.size for each in found):
         return None
-    return Jumps(here, np.stack([each - here for each in found], axis=1) / changes)
-
-
-def _moved(model: Model, x: Floats, jumps: Jumps) -> Jumps:
-    """Return where the contact is made and lost nearby, with the derivatives that were found there."""
-    return jumps._replace(control=_control_of_jumps(model, x, model.point(x).jumps))
-
-
-def _control_of_jumps(model: Model, x: Floats, around: Interval, near: Floats | None = None) -> Floats:
-    """Return the control [m] at each jump of the contact, in order, by its place ``around`` which they are; empty where
-    the law has none.
-
-    The law is followed along the turns of the path alone, and in finer and finer steps about each jump: at first about
-    where they are ``near``, if that is known.
-    """
-    values, steps = model.curve.values, np.array(around, dtype=int)
-    ways = np.sign(np.diff(values))
-    turns = np.flatnonzero(ways[1:] != ways[:-1]) + 1
-    kept = np.unique([0, *turns, *steps, *(steps + 1), values.size - 1])
-    path, first, last = values[kept], values[steps], values[steps + 1]
-    resolution, (low, high) = _RESOLUTION * np.abs(last - first), (np.minimum(first, last), np.maximum(first, last))
-    if near is not None and len(set(around)) == steps.size:
-        aside = _ASIDE * (last - first)
-        ends = (np.clip(near + side, low, high) for side in (-aside, aside))
-        path = _finer(path, np.searchsorted(kept, steps), *ends)
-    for _ in range(_REFINEMENTS):
-        try:
-            at = changes_of(model.load(x, path).touching)
-        except RoughmdrError:
-            return np.empty(0)
-        if at.size != steps.size:
-            return np.empty(0)
-        first, last = path[at], path[at + 1]
-        if (np.abs(last - first) <= resolution).all():
-            break
-        path = _finer(path, at, first, last)
-    return np.asarray(0.5 * (first + last))
-
-
-def _finer(path: Floats, at: NDArray[np.intp], first: Floats, last: Floats) -> Floats:
-    """Return the path with many steps from ``first`` to ``last`` in place of one, after each place ``at``."""
-    apart = np.append(True, (np.diff(first) != 0.0) | (np.diff(at) > 0))  # jumps in different intervals
-    between = np.linspace(first[apart], last[apart], _FINER + 1)
-    return np.insert(path, np.repeat(at[apart] + 1, _FINER + 1), between.T.ravel())
+    return Jumps(here.control, np.stack([each - here.control for each in found], axis=1) / changes)
 
 
 def with_measured_jumps(model: Model, x: Floats) -> Floats:
@@ -168,7 +117,7 @@ def nearest_in(model: Model, point: Point, interval: Interval, jumps: Jumps | No
         point = model.point(np.clip(point.x + step, low, high))
         if point.jumps == interval:
             return point
-        jumps = _moved(model, point.x, jumps)
+        jumps = jumps._replace(control=point.control)
     return None
 
 

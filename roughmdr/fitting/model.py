@@ -6,19 +6,18 @@ from contextlib import contextmanager
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from roughmdr.aggregate import LoadingPath, LoadSeparation, Problem
 from roughmdr.aggregate.under_machine import separations_of
 from roughmdr.batch.paths import machine_path
 from roughmdr.batch.realization import simulate_realization
 from roughmdr.errors import OutOfRange, RoughmdrError, SceneError, StoreError
-from roughmdr.expected import ForceRule, expected_force
+from roughmdr.expected import Changes, ForceRule, expected_force
 from roughmdr.fitting.correlation import correlation_of_noise
 from roughmdr.fitting.measured import MeasuredCurve
 from roughmdr.fitting.parameters import MACHINE, OF_THE_CURVE, OFFSET, Known, Parameter, baselines, free_parameters
 from roughmdr.fitting.spring import Spring
-from roughmdr.loading.machine import MachinePath
+from roughmdr.loading.machine import Jump, MachinePath
 from roughmdr.numerics.arguments import Floats
 from roughmdr.scene import Scene, read
 from roughmdr.scene.keys import set_key
@@ -32,8 +31,8 @@ class Load(NamedTuple):
     """[N or Pa]"""
     error: float
     """Relative error of the law."""
-    touching: NDArray[np.integer]
-    """A number that changes at each step at which asperities of one height make or lose contact."""
+    changes: Changes
+    """Where asperities of one height make and lose contact."""
     rule: ForceRule | None = None
     """The rule over shape parameters by which it was found, where there is one."""
 
@@ -48,6 +47,8 @@ class Point(NamedTuple):
     """Relative error of the law."""
     jumps: tuple[int, ...]
     """The steps after which the contact is made or lost."""
+    control: Floats
+    """The control [m] at each of these jumps."""
     load: Floats
     """[N or Pa]; empty where the law cannot be computed."""
     rule: ForceRule | None = None
@@ -55,7 +56,8 @@ class Point(NamedTuple):
 
 
 _LEAST_NOISE = 1e-12  # least noise over the largest load: of a curve without any, that of rounding
-_NONE = Point(np.empty(0), np.empty(0), 0.0, (), np.empty(0))
+_NOWHERE = Changes(np.empty(0, dtype=np.int64), np.empty(0))
+_NONE = Point(np.empty(0), np.empty(0), 0.0, (), np.empty(0), np.empty(0))
 
 
 class Model:
@@ -121,8 +123,9 @@ class Model:
 
     def scene(self, x: Floats) -> Scene:
         """Return the scene with these parameters; SceneError where it does not allow them."""
-        if not np.array_equal(x, self._read[0]):
-            self._read = x.copy(), read(self._with(x))
+        own = np.array([0.0 if p.key in OF_THE_CURVE else each for p, each in zip(self.parameters, x, strict=True)])
+        if not np.array_equal(own, self._read[0]):
+            self._read = own, read(self._with(x))
         return self._read[1]
 
     def fitted(self, x: Floats) -> Scene:
@@ -150,18 +153,18 @@ class Model:
                 return first._replace(load=load)
         self.evaluations += 1
         scene = self.scene(x)
-        path = self._path_in(scene, x, values)
+        path, jumps = self._path_in(scene, x, values), list[Jump]()
         if self._is_plain and isinstance(path, MachinePath) and scene.asperities.all_alike:
             problem = Problem(scene.asperities.ensemble(0, 0), scene.effective_modulus, scene.adhesion_model)
-            separation, _ = separations_of(problem, path.machine, path.demand)
+            separation, jumps = separations_of(problem, path.machine, path.demand, jumps=self.jumps)
             path = LoadingPath.along(separation, unload=False, adhesive=path.adhesive)
         if not (self._is_plain and isinstance(path, LoadingPath)):
             law = simulate_realization(scene, path, 0, [self.curve.quantity], "expected")
-            load = law.variables[self.curve.quantity]
-            return Load(load, law.numerical_error, (load != 0.0).astype(np.int64))
+            return Load(law.variables[self.curve.quantity], law.numerical_error, _NOWHERE)
         own = scene.asperities, path, scene.effective_modulus, scene.adhesion_model
-        force, error, touching, rule = expected_force(*own, self._rule)
-        return Load(force / self._area(scene), error, touching, rule)
+        force, error, changes, rule = expected_force(*own, self._rule)
+        changes = changes._replace(control=_control_of(changes, jumps) - self._offset(x))
+        return Load(force / self._area(scene), error, changes, rule)
 
     def _borne_by(self, x: Floats, load: Floats, rule: ForceRule | None) -> Load:
         """Return the load of the law where the spring of the machine bears another."""
@@ -223,9 +226,10 @@ class Model:
 
     def point_at(self, x: Floats) -> Point:
         """Return the law with these parameters, which is not kept."""
-        nothing = Point(x, np.full(self.curve.load.size + len(self._from_priors(x)), np.inf), 0.0, (), np.empty(0))
+        far = np.full(self.curve.load.size + len(self._from_priors(x)), np.inf)
+        nothing = _NONE._replace(x=x, deviations=far)
         try:
-            load, error, touching, rule = self.load(x, self.curve.values)
+            load, error, changes, rule = self.load(x, self.curve.values)
         except RoughmdrError as failure:
             self.last_error = failure
             return nothing
@@ -233,7 +237,7 @@ class Model:
         found = np.append(measured, self._from_priors(x))
         if not np.isfinite(found).all():
             return nothing
-        return Point(x, found, error, tuple(changes_of(touching).tolist()), load, rule)
+        return Point(x, found, error, tuple(changes.step.tolist()), changes.control, load, rule)
 
     def _from_priors(self, x: Floats) -> Floats:
         """Return the deviations from what is known of the parameters otherwise, as if it had been measured."""
@@ -267,7 +271,11 @@ class Model:
         return table
 
 
-def changes_of(touching: NDArray[np.integer]) -> NDArray[np.intp]:
-    """Return the steps after which contact is made or lost, each as often as that happens there."""
-    changes = np.abs(np.diff(touching))
-    return np.repeat(np.arange(changes.size), changes)
+def _control_of(changes: Changes, jumps: list[Jump]) -> Floats:
+    """Return the control [m] at each change: the separation, or on a machine that of the jump that passes this."""
+    control = changes.control.copy()
+    for jump in jumps:
+        lower, upper = sorted((jump.before, jump.after))
+        passed = (changes.step == jump.step - 1) & (lower <= changes.control) & (changes.control <= upper)
+        control[passed] = jump.demand
+    return control

@@ -44,8 +44,29 @@ def test_the_jumps_of_both_lie_where_they_are_alone(points: int) -> None:
     assert found is not None
     fold = 0.75 * (np.pi * TIP.work * np.sqrt(TIP.size) / (2e6 / 0.75)) ** (2.0 / 3.0)
     places = np.array([0.0, -BELOW, fold - BELOW, fold]) - ZERO
-    assert found.control == pytest.approx(places, abs=1e-6 * TIP.scale)
-    assert found.slopes[:, 2] == pytest.approx(np.full(4, -offset.scale), rel=1e-2)
+    assert found.control == pytest.approx(places, abs=1e-12 * TIP.scale)
+    shift = 2.0 / 3.0 * fold * np.array([0.0, 0.0, 1.0, 1.0])
+    by_each = np.stack([-shift, shift, np.full(4, -offset.scale)], axis=1)
+    assert found.slopes == pytest.approx(by_each, abs=1e-5 * TIP.scale)
+
+
+@pytest.mark.parametrize("stiffness", [0.3, 3.0, 300.0])
+def test_a_cantilever_jumps_where_one_asperity_does(stiffness: float) -> None:
+    """Into contact at first touch, off it where ``pull_off`` finds the fold with that spring."""
+    fold = float(
+        rm.pull_off(
+            rm.Paraboloid(radius=TIP.size),
+            control="remote",
+            machine_stiffness=stiffness,
+            effective_modulus=2e6 / 0.75,
+            work=TIP.work,
+            adhesion="jkr",
+        ).remote
+    )
+    remote = np.concatenate([down := np.linspace(-2.0 * fold, -2e-6, 60), down[::-1]])
+    curve = read_measured(pd.DataFrame({"remote": remote, "force": -remote}), 3)
+    model = Model(*scene_to_fit(TIP.scene(path={"machine_stiffness": stiffness}), {}, curve, FREE), FREE)
+    assert model.point(np.zeros(3)).control == pytest.approx([0.0, -fold], abs=1e-10 * TIP.scale)
 
 
 @pytest.mark.large
