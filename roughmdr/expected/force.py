@@ -45,8 +45,7 @@ class Force(NamedTuple):
     error: float
     """Error bound over the largest force."""
     changes: Changes
-    """Of populations of one height and, where shapes are drawn, of first touch alone, for they lose contact one by one.
-    """
+    """Those of populations of one height; where shapes are drawn, which lose contact one by one, first touch alone."""
     rule: ForceRule | None
     """The rule by which it was found; None where steps had rules of their own."""
 

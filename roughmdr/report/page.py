@@ -1,22 +1,23 @@
-"""A result as one self-contained page of HTML: figures, errors, scene and provenance, in light and dark."""
+"""A result or a fit as one self-contained page of HTML: pictures, errors, scene and provenance, in light and dark."""
 
 import base64
 import shlex
-from collections.abc import Iterator
+import warnings
+from collections.abc import Iterable, Iterator
 from contextlib import suppress
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from roughmdr.errors import StoreError
+from roughmdr.errors import StoreError, level_outside
+from roughmdr.fitting.words import curve_names, fit_lines
 from roughmdr.model_error.parts import ALL_PARTS
 from roughmdr.pictures.kinds import draw_request
-from roughmdr.pictures.request import Drawable, Request
+from roughmdr.pictures.request import Drawable, Request, drawable
 from roughmdr.pictures.style import png_of, styled
 from roughmdr.report.cite import describe_papers
 from roughmdr.report.summary import describe_cells, summary_lines
-from roughmdr.result.given import given_result
 from roughmdr.result.model_errors import largest_of_result
 from roughmdr.result.view import ResultView
 from roughmdr.schema.keywords import named_keywords
@@ -45,15 +46,16 @@ class _Figure(NamedTuple):
 
 @named_keywords
 def write_report(result: "str | Path | xr.Dataset", out: str | Path, *, fresh: bool = False) -> None:
-    """Write a result as one page of HTML that needs no other file.
+    """Write a result or a fit as one page of HTML that needs no other file.
 
-    It holds the scene, pictures, the pull-off, the errors, run time, what was left out, where the numbers come from,
-    how to run the scene again and what to cite; it is legible on narrow and wide screens, light and dark.
+    It holds the scene, pictures, the pull-off or the fitted parameters, the errors, run time, what was left out, where
+    the numbers come from, how to run the scene again and what to cite; it is legible on narrow and wide screens, light
+    and dark.
 
     Parameters
     ----------
     result : path or xarray.Dataset
-        A result file, or what ``run`` returned.
+        The file of a result or a fit, or what ``run`` or ``fit`` returned.
     out : path
         The page to write: .html. A page that is there already is replaced.
     fresh : bool, optional
@@ -62,17 +64,18 @@ def write_report(result: "str | Path | xr.Dataset", out: str | Path, *, fresh: b
     Raises
     ------
     StoreError
-        Where there is no such result, no run was computed, or ``out`` cannot be written or must not be replaced.
+        Where there is no such result or fit, no run was computed, or ``out`` cannot be written or must not be replaced.
     """
-    data, file = given_result(result)
-    path = Path(out)
-    check_page(path, file, fresh=fresh)
-    write_page(data, file, path)
+    source, path = drawable(result), Path(out)
+    if source.doubt:
+        warnings.warn(f"{source.file}: {source.doubt}", UserWarning, stacklevel=level_outside())
+    check_page(path, source.file, fresh=fresh)
+    write_page(source, path)
 
 
-def write_page(result: ResultView, file: Path | None, path: Path) -> None:
-    """Write the page of a result that was read, from ``file`` or None; StoreError if no run was computed."""
-    text = page_of(result, file)
+def write_page(source: Drawable, path: Path) -> None:
+    """Write the page of a result or a fit that was read; StoreError if it is none, or no run was computed."""
+    text = page_of(source)
     with replace_atomically(path) as temporary:
         temporary.write_text(text, encoding="utf-8")
 
@@ -85,25 +88,22 @@ def check_page(path: Path, file: Path | None, *, fresh: bool) -> None:
         check_same_kind(path, "html")
 
 
-def page_of(result: ResultView, file: Path | None) -> str:
+def page_of(source: Drawable) -> str:
     """Return that page."""
     from importlib.resources import files
 
     from jinja2 import Environment
 
-    attrs = result.attrs
+    if source.content == "ensemble":
+        raise StoreError(f"{source.file or 'result'}: holds asperities; a page is of a result or a fit")
+    attrs = source.data.attrs
     template = Environment(autoescape=True).from_string(files(__package__).joinpath(_TEMPLATE).read_text("utf-8"))
+    result = source.result if source.content == "result" else None
     return template.render(
         title=escape_controls(attrs["title"]),
-        made=f"{attrs['source']}, seed {attrs['seed']}",
-        doubt="" if file is None else result.doubt,
+        doubt=source.doubt,
         warnings=attrs.get("warnings", "").splitlines(),
-        summary=list(_summary(result)),
-        figures=list(_figures(Drawable("result", result.labelled, file))),
-        errors=list(error_rows(result)),
-        cells=describe_cells(result) if len(result.cells) > 1 else "",
-        left_out=[line.partition(": ")[::2] for line in attrs["left_out"].splitlines()],
-        file="out.nc" if file is None else shlex.quote(file.name),
+        **(_of_fit(source) if result is None else _of_result(source)),
         scene=attrs["scene"].strip(),
         origin=[("made by", attrs["packages"]), ("history", attrs["history"]), ("checksum", attrs.get("checksum", ""))],
         citations=describe_papers(attrs["scene"], result, bibtex=False),
@@ -111,9 +111,43 @@ def page_of(result: ResultView, file: Path | None) -> str:
     )
 
 
-def _summary(result: ResultView) -> Iterator[tuple[str, list[str]]]:
-    """Yield the lines of the summary, those that go on under the name that they began with."""
-    for name, texts in gathered(summary_lines(result)).items():
+def _of_result(source: Drawable) -> dict[str, Any]:
+    """Return the parts of the page of a result."""
+    result, attrs = source.result, source.data.attrs
+    return {
+        "made": f"{attrs['source']}, seed {attrs['seed']}",
+        "summary": list(_summary(summary_lines(result))),
+        "figures": list(_figures(source)),
+        "errors": list(error_rows(result)),
+        "cells": describe_cells(result) if len(result.cells) > 1 else "",
+        "left_out": [line.partition(": ")[::2] for line in attrs["left_out"].splitlines()],
+        "about_scene": "The result holds its scene; this computes the same numbers again, to the last bit:",
+        "command": f"roughmdr run {_name(source, 'out.nc')} -o again.nc",
+    }
+
+
+def _of_fit(source: Drawable) -> dict[str, Any]:
+    """Return the parts of the page of a fit."""
+    attrs, many = source.data.attrs, bool(curve_names(source.data))
+    words = "the parameters of all curves" if many else "the measured points, the fitted law and the residuals"
+    own = "The fit holds the fitted scene; this computes its law:"
+    return {
+        "made": attrs["source"],
+        "summary": list(_summary(fit_lines(source.data))),
+        "figures": [_figure(source, Request("fit"), words)],
+        "about_scene": "Each curve has a scene of its own; the search began with this one:" if many else own,
+        "command": "" if many else f"roughmdr run {_name(source, 'fit.nc')} -o law.nc",
+    }
+
+
+def _name(source: Drawable, usual: str) -> str:
+    """Return the name of the file in a command."""
+    return usual if source.file is None else shlex.quote(source.file.name)
+
+
+def _summary(lines: Iterable[tuple[str, str]]) -> Iterator[tuple[str, list[str]]]:
+    """Yield the lines of a summary, those that go on under the name that they began with."""
+    for name, texts in gathered(lines).items():
         more = len(texts) - _MAX_LINES
         if name not in _LEFT:
             rest = [f"... and {more} more lines, which roughmdr info prints"] if more > 0 else []

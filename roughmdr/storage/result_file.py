@@ -45,7 +45,7 @@ def read_result(path: Path) -> Labelled:
     except RoughmdrError as error:
         raise StoreError(f"{path}: {error}") from None
     if data.attrs.get("kind") == FIT:
-        raise StoreError(f"{path}: holds a fit, no result; info, plot and cite show it, and run computes its scene")
+        raise StoreError(f"{path}: holds a fit, no result; info, plot, report, cite show it, run computes its scene")
     return as_result(data, path)
 
 

@@ -7,10 +7,12 @@ from html.parser import HTMLParser
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 from click.testing import CliRunner
 from forms import large
 from scenes import ASPERITIES, scene
+from tips import Tip
 
 import roughmdr as rm
 from roughmdr.cli import main
@@ -84,6 +86,32 @@ def test_a_page_holds_all_of_it_and_needs_no_other_file(tmp_path: Path, changes:
         assert kind == "data:image/png;base64"
         assert base64.b64decode(content).startswith(b"\x89PNG")
     assert "prefers-color-scheme: dark" in text
+
+
+@pytest.mark.few(1)
+@pytest.mark.parametrize("curves", [1, 2])
+def test_a_fit_has_a_page_too(tmp_path: Path, curves: int) -> None:
+    tip, free = Tip("hertz", 1e-6, 1e5), ["material.modulus", "offset"]
+    measured = [tip.measure(np.random.default_rng(seed), 30, ("constant", 0.01), 0.0) for seed in range(curves)]
+    fit, page = tmp_path / "fit.nc", tmp_path / "fit.html"
+    rm.fit(measured[0] if curves == 1 else dict(zip("ab", measured, strict=True)), tip.scene(), free, fit)
+    done = CliRunner().invoke(main, ["report", str(fit), "-o", str(page)])
+    assert done.exit_code == 0, done.output
+    text = page.read_text("utf-8")
+    read = Page(text)
+    assert read.open == []
+    assert len(read.images) == 2
+    said = "".join(read.texts)
+    for part in ("material.modulus", "95 %", "model error", "[asperities]", "Sneddon", "checksum"):
+        assert part in said
+    assert ("roughmdr run fit.nc -o law.nc" in said) == (curves == 1)
+    rm.write_report(fit, page)
+    assert page.read_text("utf-8") == text
+
+
+def test_asperities_have_no_page(tmp_path: Path) -> None:
+    with pytest.raises(rm.StoreError, match="holds asperities; a page is of a result or a fit"):
+        rm.write_report(rm.generate(scene(asperities=FEW)), tmp_path / "page.html")
 
 
 @pytest.mark.large
