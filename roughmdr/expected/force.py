@@ -45,7 +45,7 @@ class Force(NamedTuple):
     error: float
     """Error bound over the largest force."""
     changes: Changes
-    """Populations of one height change there; where shapes are drawn, and contact is lost one by one, at first touch."""
+    """Populations of one height change there; where shapes are drawn, losing contact one by one, at first touch."""
     rule: ForceRule | None
     """The rule by which it was found; None where steps had rules of their own."""
 
