@@ -42,7 +42,7 @@ class Leg(NamedTuple):
 class ResultView:
     """Reads a result, from its arrays or from a Dataset; of one in chunks only the arrays asked for are loaded.
 
-    Properties of a whole result are computed once, when they are first asked for.
+    Properties of a whole result, and means, are computed once, when they are first asked for.
     """
 
     def __init__(self, data: "Labelled | xr.Dataset") -> None:
@@ -54,6 +54,7 @@ class ResultView:
         self.coordinates = cast("Mapping[str, Array]", coordinates)
         self.attrs: dict[str, Any] = data.attrs
         self.sizes = cast("Mapping[str, int]", data.sizes)
+        self._means: dict[str, tuple[Floats, Floats]] = {}
 
     @property
     def labelled(self) -> Labelled:
@@ -223,8 +224,11 @@ class ResultView:
         """
         if f"{name}_mean" in self.variables:
             return self.variables[f"{name}_mean"].values, self.variables[f"{name}_sem"].values
-        array = self.variables[name]
-        return mean_and_error(array.values, self.done if "step" in array.dims else np.isfinite(array.values))
+        if name not in self._means:
+            array = self.variables[name]
+            known = self.done if "step" in array.dims else np.isfinite(array.values)
+            self._means[name] = mean_and_error(array.values, known)
+        return self._means[name]
 
     def known(self, name: str) -> Floats:
         """Return the finite values of a diagnostic, of all runs one after the other; none where it is not stored."""
@@ -235,7 +239,7 @@ class ResultView:
         """Return the largest known value of a diagnostic over all runs; 0 where it is not known or not stored."""
         return float(self.known(name).max(initial=0.0))
 
-    @property
+    @cached_property
     def pull_off_counts(self) -> Floats:
         """The number of realisations of each cell with a pull-off; a part of a result counts its own."""
         if "pull_off_force" in self.variables:

@@ -18,9 +18,12 @@ from command import ROUGHMDR
 from scenes import ASPERITIES, scene
 
 import roughmdr as rm
+from roughmdr.batch.moments import mean_and_error
 from roughmdr.cli import main
 from roughmdr.report import documents
+from roughmdr.report.result_document import result_table
 from roughmdr.report.summary import info
+from roughmdr.result import view
 from roughmdr.runner import run as runner
 
 FEW = scene(asperities={**ASPERITIES, "count": 50}, batch={"realizations": 3})
@@ -230,3 +233,21 @@ def test_nothing_in_it_reaches_a_terminal_and_any_encoding_holds_it() -> None:
 def test_what_is_not_finite_is_null() -> None:
     table: Any = {"a": math.nan, "b": [math.inf, np.float64("-inf"), np.int64(3)], "c": (np.array([1.0, math.nan]),)}
     assert json.loads(documents.to_json(table)) == {"a": None, "b": [None, None, 3], "c": [[1.0, None]]}
+
+
+def test_means_of_all_cells_are_computed_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    calls = list[int]()
+
+    def counting(values: Any, known: Any) -> Any:
+        calls.append(values.size)
+        return mean_and_error(values, known)
+
+    monkeypatch.setattr(view, "mean_and_error", counting)
+    counts = []
+    for works in (["10 mJ/m^2"], ["10 mJ/m^2", "20 mJ/m^2", "50 mJ/m^2"]):
+        swept = rm.run({**FEW, "sweep": {"adhesion.work": works}})
+        found = result_table(view.ResultView(swept), None)
+        assert all(cell["pull_off"] for cell in found["cells"])
+        counts.append(len(calls))
+        calls.clear()
+    assert counts[0] == counts[1] > 0
