@@ -11,8 +11,8 @@ from roughmdr.cli.terminal import Command, print_note, print_text
 
 @click.command(cls=Command)
 @click.argument("result", type=FILE)
-@click.option("-o", "--output", type=OUTPUT, required=True, help="File to write: .inp, .mac, .i, .csv or .json.")
-@click.option("--to", required=True, metavar="FORMAT", help="abaqus, calculix, moose, ansys, csv or json.")
+@click.option("-o", "--output", type=OUTPUT, required=True, help="File to write: .inp, .mac, .i, .h, .csv or .json.")
+@click.option("--to", required=True, metavar="FORMAT", help="abaqus, calculix, moose, ansys, c, csv or json.")
 @click.option(
     "--quantity",
     default="pressure",
@@ -32,7 +32,7 @@ from roughmdr.cli.terminal import Command, print_note, print_text
 @click.option("--select", "selected", multiple=True, metavar="KEY=VALUE", help="Of a sweep: one cell; repeatable.")
 @fresh_option
 def export(result: Path, output: Path, selected: tuple[str, ...], fresh: bool, **options: str | float) -> None:
-    """Write the law of RESULT as a table for a finite-element code.
+    """Write the law of RESULT as a table for a finite-element code, or a function in C.
 
     It is the mean law per nominal area over the realisations, or the expected one, from first touch on, with as few
     points as the error takes; its header says within which errors it holds. "nodes" are a few asperities whose sum is

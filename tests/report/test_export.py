@@ -1,6 +1,7 @@
 """Exported tables: every format through a plain reader, the law that they hold, what is refused."""
 
 import shutil
+import subprocess
 from pathlib import Path
 from typing import Any
 
@@ -261,7 +262,7 @@ def test_one_cell_of_a_sweep_is_selected(mode: str, tmp_path: Path) -> None:
             "needs the variable 'thermal_conductance' or 'electrical_conductance'",
         ),
         ({"to": "csv", "quantity": "tangential"}, "'tangential_stiffness': add it to \\[output\\] variables"),
-        ({"to": "abaqus", "quantity": "area"}, "abaqus has no table of quantity 'area'; moose, csv, json have"),
+        ({"to": "abaqus", "quantity": "area"}, "abaqus has no table of quantity 'area'; moose, c, csv, json have"),
         ({"to": "csv", "units": "mm,N,Pa"}, "are not consistent"),
         ({"to": "csv", "branch": "sideways"}, "branch is 'sideways'"),
         ({"to": "csv", "error": 0.0}, "error is 0.0"),
@@ -350,3 +351,44 @@ def test_contacts_that_yield_have_a_table_of_the_first_loading_and_one_of_what_f
         np.testing.assert_allclose(at, pressure, atol=0.1 * pressure.max())
     with pytest.raises(rm.StoreError, match=r"scene has \[plasticity\]"):
         exported(tmp_path / "yielding.nc", "nodes.csv", to="csv", quantity="nodes")
+
+
+_PROGRAM = """
+#include <stdio.h>
+#include <stdlib.h>
+#include "layer.h"
+#define ROUGH_PRESSURE unloaded
+#include "unloaded.h"
+int main(void)
+{
+    for (double x, k; scanf("%lf", &x) == 1;) {
+        const double loaded = rough_pressure(x, &k);
+        printf("%.17g %.17g %.17g\\n", loaded, k, unloaded(x, NULL));
+    }
+    return 0;
+}
+"""
+
+
+@pytest.mark.skipif(shutil.which("cc") is None, reason="there is no compiler of C")
+@pytest.mark.parametrize("language", [["c", "-std=c99"], ["c++", "-std=c++11"]])
+def test_a_function_in_c_has_the_lines_of_the_table(files: Path, language: list[str]) -> None:
+    """Before its first point, at 100 000 between, at each, beyond the last, and where it is asked for no number."""
+    table, program = exported(files / "jkr.nc", "layer.csv", to="csv"), files / "program.c"
+    exported(files / "jkr.nc", "layer.h", to="c")
+    exported(files / "jkr.nc", "unloaded.h", to="c", branch="unloading")
+    program.write_text(_PROGRAM)
+    options = ["-Wall", "-Wextra", "-Werror", "-pedantic", "-o", f"{files}/a.out"]
+    subprocess.run(["cc", "-x", *language, program, *options], check=True)
+
+    x, y = of_csv(table).to_numpy()[:, :2].T
+    before, between, beyond = x[0] - np.ptp(x), np.linspace(x[0], x[-1], 100_001)[1:], x[-1] + np.ptp(x)
+    at = [before, *between, *x, beyond, np.nan]
+    told = subprocess.check_output([files / "a.out"], input="\n".join(map(repr, map(float, at))), text=True)
+    found, slope, unloaded = np.array([line.split() for line in told.splitlines()], dtype=float).T
+    assert found[:-2] == pytest.approx(np.interp(at[:-2], x, y), abs=1e-13 * y.max())
+    assert np.isnan([*found[-2:], *slope[-2:]]).all()
+    line = np.clip(np.searchsorted(x, between, side="right"), 1, x.size - 1)
+    assert slope[1 : between.size + 1] == pytest.approx((np.diff(y) / np.diff(x))[line - 1], rel=1e-12)
+    assert slope[0] == 0.0
+    assert (unloaded < found - 1e-3 * y.max()).any()  # another function in the same program

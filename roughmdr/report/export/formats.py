@@ -1,4 +1,4 @@
-"""The formats of exported files, each declared once: finite-element codes read two columns, CSV and JSON hold all.
+"""The formats of exported files, each declared once: finite-element codes and C have two columns, CSV and JSON all.
 
 Options of Abaqus and CalculiX are to be included under *SURFACE INTERACTION. Real constants of contact elements of
 Ansys take the name of an array of type TABLE as %NAME%; its primary variable GAP is positive in penetration, PRESSURE
@@ -13,11 +13,14 @@ class Template(NamedTuple):
     """Lines of a table in the syntax of a code; in braces stand the fields that ``text_of`` fills in."""
 
     head: str
-    """Once: {value}, the name of the variable; {count} of points; {xs} and {ys}, all numbers; {columns}, all names with
-    units; of friction {friction}, {stick}, the stiffness at the largest pressure, and {slip}, the elastic slip there.
+    """Once: {value}, the name of the variable, in capitals {VALUE}; {count} of points; {xs} and {ys}, all numbers;
+    {columns}, all names with units; of friction {friction}, {stick}, the stiffness at the largest pressure, and {slip},
+    the elastic slip there.
     """
     row: str = ""
     """For each point: {x}, the argument; {y}, the value; {number}, from 1; {all} numbers."""
+    foot: str = ""
+    """Once, behind the points; fields as in ``head``."""
 
 
 class Format(NamedTuple):
@@ -28,7 +31,7 @@ class Format(NamedTuple):
     comment: str
     """Start of the lines of its header; empty for JSON, whose object holds the header."""
     quantities: Mapping[str, str]
-    """Quantities that it can hold, each with a note for the header on how the code takes it."""
+    """Quantities that it can hold, each with a note for the header on how the code takes it: {value}, {VALUE} in it."""
     templates: Mapping[str, Template]
     """By the name of the value, or "" for any."""
     with_tension: bool = True
@@ -52,6 +55,46 @@ _FUNCTION = """\
     y = '{ys}'
   []
 []"""
+
+
+_HEADER = """\
+#include <math.h>
+#include <stddef.h>
+
+#ifndef ROUGH_{VALUE}
+#define ROUGH_{VALUE} rough_{value}
+#endif
+
+static inline double ROUGH_{VALUE}(double x, double *slope)
+{{
+    static const double table[][2] = {{"""
+_SEARCH = """\
+    }};
+    size_t first = 0, last = {count} - 1;
+    double s = 0.0, y = table[0][1];
+    if (!(x <= table[last][0])) {{
+        s = y = NAN;
+    }} else if (x > table[0][0]) {{
+        while (last - first > 1) {{
+            const size_t middle = (first + last) / 2;
+            if (table[middle][0] <= x)
+                first = middle;
+            else
+                last = middle;
+        }}
+        s = (table[last][1] - table[first][1]) / (table[last][0] - table[first][0]);
+        y = table[first][1] + s * (x - table[first][0]);
+    }}
+    if (slope)
+        *slope = s;
+    return y;
+}}
+#undef ROUGH_{VALUE}"""
+_IN_C = (
+    "rough_{value}(x, slope) in C99 and C++11: the value at x and, where slope is no null pointer, its derivative; "
+    "constant before the first point, NAN beyond the last, where the law is not known; to give it another name, define "
+    "ROUGH_{VALUE} before #include"
+)
 
 
 def _array(name: str, primary: str) -> Template:
@@ -124,6 +167,13 @@ FORMATS = {
                 "electrical_conductance": _array("ROUGH_ECC", "PRESSURE"),
             },
             with_tension=False,
+        ),
+        Format(
+            "c",
+            (".h",),
+            "//",
+            dict.fromkeys(("pressure", "conductance", "area", "tangential"), _IN_C),
+            {"": Template(_HEADER, "        {{{x!r}, {y!r}}},", _SEARCH)},
         ),
         Format("csv", (".csv",), "#", _ALL, {"": Template("{columns}", "{all}")}),
         Format("json", (".json",), "", _ALL, {}),

@@ -49,6 +49,7 @@ def text_of(document: Document, form: Format) -> str:
         )
     fields = {
         "value": value.name,
+        "VALUE": value.name.upper(),
         "count": value.values.size,
         "columns": ",".join(f"{column.name} [{column.unit}]" for column in document.columns),
         "xs": _listed(argument),
@@ -67,7 +68,7 @@ def text_of(document: Document, form: Format) -> str:
             template.row.format(x=point[0], y=point[1], number=number, all=",".join(map(repr, point)))
             for number, point in enumerate(points, start=1)
         )
-    return "\n".join([*lines, ""])
+    return "\n".join([*lines, *[template.foot.format(**fields)] * bool(template.foot), ""])
 
 
 def _comments(document: Document, form: Format) -> Iterator[str]:

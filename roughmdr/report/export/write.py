@@ -65,7 +65,7 @@ class Export:
 
 @with_options(Export)
 def export(result: "str | Path | xr.Dataset", out: str | Path, *, to: str, fresh: bool = False, **options: Any) -> None:
-    """Write the mean law of a result, or its expected law, as a table for a finite-element code.
+    """Write the mean law of a result, or its expected law, as a table for a finite-element code, or a function in C.
 
     A LimitWarning tells of parts of the law that such a table leaves out.
 
@@ -74,9 +74,9 @@ def export(result: "str | Path | xr.Dataset", out: str | Path, *, to: str, fresh
     result : path or xarray.Dataset
         A result file, or what ``run`` returned, over the separation.
     out : path
-        The file to write: .inp for Abaqus, CalculiX and Ansys, .i for MOOSE, .csv, .json. One that was exported before
-        is replaced.
-    to : {"abaqus", "calculix", "moose", "ansys", "csv", "json"}
+        The file to write: .inp for Abaqus, CalculiX and Ansys, .i for MOOSE, .h, .csv, .json. One that was exported
+        before is replaced.
+    to : {"abaqus", "calculix", "moose", "ansys", "c", "csv", "json"}
         The code, or the format.
     fresh : bool, optional
         Whether to replace a file of any kind at ``out``.
@@ -156,7 +156,7 @@ def document_of(result: ResultView, file: Path | None, asked: Export) -> tuple[D
     _check_fit(table, quantity, units, asked)
     header = dict(origin_lines(cell, words)) | dict(table_lines(cell, table, quantity, law.source, units))
     if note := asked.format.quantities[asked.quantity]:
-        header["use"] = note
+        header["use"] = note.format(value=value.name, VALUE=value.name.upper())
     memory = {"memory": _MEMORY[asked.branch]} if cell.known(PLASTIC).size else {}
     friction = _friction(result, asked) if quantity.name == "tangential" else None
     return Document(quantity.name, header | memory, columns, friction), (*table.warnings, *memory.values())
