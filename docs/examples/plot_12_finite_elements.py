@@ -83,5 +83,5 @@ pd.DataFrame(rows).rename_axis(columns="error asked")
 # - The error of the lines is not that of the model. The header tells that one too: asperities are independent here, and
 #   ``interaction.model = "pairwise"`` mends most of it (:doc:`plot_09_interaction`).
 # - ``pipelines/scenes/rough_joint.inp`` is a CalculiX model of two steel blocks that includes such a table.
-# - ``quantity="area"``, ``"conductance"`` and ``"tangential"`` write other tables, and ``to="moose"``, ``"ansys"`` and
-#   ``"json"`` other formats.
+# - ``quantity="area"``, ``"conductance"`` and ``"tangential"`` write other tables, and ``to="moose"``, ``"ansys"``,
+#   ``"c"`` and ``"json"`` other formats.

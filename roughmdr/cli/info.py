@@ -102,7 +102,7 @@ def _is_missing(path: Path) -> bool:
     except (FileNotFoundError, NotADirectoryError):
         return True
     except (OSError, ValueError):  # a circle of links, or a name that is too long or has NUL: reading tells which
-        return False
+        pass
     return False
 
 

@@ -1,5 +1,6 @@
 """The force alone of the expected law, by a rule over the shape parameters that was found for parameters nearby."""
 
+from collections import Counter
 from typing import NamedTuple
 
 import numpy as np
@@ -12,6 +13,7 @@ from roughmdr.ensemble.nodes import Rule
 from roughmdr.errors import OutOfRange
 from roughmdr.expected.compute import KERNEL_ERROR, as_ensemble, warnings_of
 from roughmdr.expected.converge import converge_at_kinks
+from roughmdr.expected.curve import branch_ends
 from roughmdr.expected.detached import PartialRule, sums_of
 from roughmdr.expected.node import MeanProblem, QuadratureNode, set_up
 from roughmdr.kernels.adhesion import Adhesion
@@ -34,7 +36,7 @@ class Changes(NamedTuple):
     step: Ints
     """The steps after which they do."""
     control: Floats
-    """The separation [m], or on a machine the position of the far end."""
+    """The separation [m] there; of a fitted law the measured control."""
 
 
 class Force(NamedTuple):
@@ -45,7 +47,7 @@ class Force(NamedTuple):
     error: float
     """Error bound over the largest force."""
     changes: Changes
-    """Populations of one height change there; where shapes are drawn, losing contact one by one, at first touch."""
+    """Where populations of one height make and lose contact."""
     rule: ForceRule | None
     """The rule by which it was found; None where steps had rules of their own."""
 
@@ -82,20 +84,27 @@ def expected_force(
     largest = float(np.abs(total[FORCE]).max())
     error = KERNEL_ERROR + rule.error + (float(total[ERROR].max()) / largest if largest > 0.0 else 0.0)
     warnings_of(error, 0.0)
-    changes = _changes(path, nodes if alike else nodes[:1], of_loss=alike)
+    changes = _changes(path, nodes, alike=alike)
     return Force(source.expected_count * total[FORCE], error, changes, rule if split is None else None)
 
 
-def _changes(path: LoadingPath, nodes: list[QuadratureNode], *, of_loss: bool) -> Changes:
-    """Return where nodes whose heights are all equal make contact and, if asked for, lose it."""
+def _changes(path: LoadingPath, nodes: list[QuadratureNode], *, alike: bool) -> Changes:
+    """Return where nodes whose heights are all equal make and lose contact; those of drawn shapes make it together, and
+    lose it one by one, which is no change.
+    """
     found = list[tuple[int, float]]()
-    for node in nodes:
-        if node.heights.all_equal and node.contact.kernels.adhesive:
-            touching = np.zeros(path.separation.size, dtype=np.int8)
-            touching[node.in_contact.around(0.0).step] = 1
-            made, lost = (np.flatnonzero(np.diff(touching) == sign).tolist() for sign in (1, -1))
-            found += [(step, node.heights.origin - node.contact.onset) for step in made]
-            found += [(step, node.heights.origin + node.contact.depth[0]) for step in lost if of_loss]
-    ways = np.diff(path.separation)
-    found.sort(key=lambda each: (each[0], ways[each[0]] * each[1]))
+    fixed = [node for node in nodes if node.heights.all_equal and node.contact.kernels.adhesive]
+    count = Counter(node.heights.origin for node in fixed)
+    for node in fixed if alike else {node.heights.origin: node for node in fixed}.values():
+        contact, origin, own = node.contact, node.heights.origin, node.in_contact.around(0.0)
+        branch, feet = np.zeros(path.separation.size, dtype=np.int64), branch_ends(contact)[0]
+        branch[own.step] = own.branch
+        ways = np.diff(np.sign(branch))
+        made = max(contact.onset, contact.depth[0] * (feet[0] - 1.0))
+        found += [(step, origin - made) for step in np.flatnonzero(ways > 0).tolist()]
+        if alike or count[origin] == 1:
+            lost = np.flatnonzero(ways < 0).tolist()
+            found += [(step, origin + contact.depth[0] * (1.0 - min(feet[: branch[step]]))) for step in lost]
+    rises = np.diff(path.separation)
+    found.sort(key=lambda each: (each[0], rises[each[0]] * each[1]))
     return Changes(np.array([step for step, _ in found], dtype=np.int64), np.array([place for _, place in found]))

@@ -32,7 +32,7 @@ class Load(NamedTuple):
     error: float
     """Relative error of the law."""
     changes: Changes
-    """Where asperities of one height make and lose contact."""
+    """Where asperities of one height make and lose contact; not known of a mean law on a machine."""
     rule: ForceRule | None = None
     """The rule over shape parameters by which it was found, where there is one."""
 
@@ -272,7 +272,10 @@ class Model:
 
 
 def _control_of(changes: Changes, jumps: list[Jump]) -> Floats:
-    """Return the control [m] at each change: the separation, or on a machine that of the jump that passes this."""
+    """Return the control [m] at each change: on a machine that of the jump that passes it.
+
+    Where none does, no force acts, and the far end of the spring is at the separation.
+    """
     control = changes.control.copy()
     for jump in jumps:
         lower, upper = sorted((jump.before, jump.after))

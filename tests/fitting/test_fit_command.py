@@ -126,7 +126,7 @@ def test_files_of_another_kind_are_no_fit(folder: Path) -> None:
         read_fit(folder / "empty.nc")
 
 
-def test_info_and_cite_know_a_fit_and_report_says_what_it_is(folder: Path) -> None:
+def test_info_and_cite_know_a_fit_and_export_says_what_it_is(folder: Path) -> None:
     told = roughmdr("info", "fit.nc", cwd=folder)
     assert told.returncode == 0
     assert told.stdout.startswith("fitted       adhesion.work")
@@ -135,7 +135,7 @@ def test_info_and_cite_know_a_fit_and_report_says_what_it_is(folder: Path) -> No
         with pytest.raises(StoreError, match=r"not as roughmdr\.fit returns it: it has no residual"):
             rm.info(fit.drop_vars("residual"))
     assert "Johnson" in roughmdr("cite", "fit.nc", cwd=folder).stdout
-    refused = roughmdr("report", "fit.nc", "-o", "page.html", cwd=folder)
+    refused = roughmdr("export", "fit.nc", "-o", "law.csv", "--to", "csv", cwd=folder)
     assert (refused.returncode, refused.stdout) == (2, "")
     assert "holds a fit, no result" in refused.stderr
 

@@ -30,7 +30,8 @@ def expected(**changes: Any) -> dict[str, Any]:
 def files(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("exports")
     rm.run(expected(), folder / "hertz.nc")
-    rm.run(expected(adhesion=scene()["adhesion"], path=DEEP), folder / "jkr.nc")
+    title = f"In ASCII {'界' * 80}\\"  # whose lines end in backslashes
+    rm.run(expected(adhesion=scene()["adhesion"], path=DEEP, title=title), folder / "jkr.nc")
     return folder
 
 
@@ -382,13 +383,14 @@ def test_a_function_in_c_has_the_lines_of_the_table(files: Path, language: list[
     subprocess.run(["cc", "-x", *language, program, *options], check=True)
 
     x, y = of_csv(table).to_numpy()[:, :2].T
-    before, between, beyond = x[0] - np.ptp(x), np.linspace(x[0], x[-1], 100_001)[1:], x[-1] + np.ptp(x)
-    at = [before, *between, *x, beyond, np.nan]
+    far, tension = of_csv(exported(files / "jkr.nc", "unloaded.csv", to="csv", branch="unloading")).to_numpy()[0, :2]
+    before, between, beyond = np.nextafter(x[0], -1.0), np.linspace(x[0], x[-1], 100_001)[1:], x[-1] + np.ptp(x)
+    at = [before, *between, *x, far, np.nextafter(far, -1.0), beyond, np.nan]
     told = subprocess.check_output([files / "a.out"], input="\n".join(map(repr, map(float, at))), text=True)
     found, slope, unloaded = np.array([line.split() for line in told.splitlines()], dtype=float).T
-    assert found[:-2] == pytest.approx(np.interp(at[:-2], x, y), abs=1e-13 * y.max())
+    assert found[:-2] == pytest.approx(np.interp(at[:-2], x, y, left=0.0), abs=1e-13 * y.max())
     assert np.isnan([*found[-2:], *slope[-2:]]).all()
     line = np.clip(np.searchsorted(x, between, side="right"), 1, x.size - 1)
     assert slope[1 : between.size + 1] == pytest.approx((np.diff(y) / np.diff(x))[line - 1], rel=1e-12)
-    assert slope[0] == 0.0
-    assert (unloaded < found - 1e-3 * y.max()).any()  # another function in the same program
+    assert found[0] == slope[0] == unloaded[-3] == 0.0
+    assert unloaded[-4] == tension < 0.0  # another function in the same program

@@ -111,7 +111,7 @@ def test_a_fit_has_a_page_too(tmp_path: Path, curves: int) -> None:
 
 def test_asperities_have_no_page(tmp_path: Path) -> None:
     with pytest.raises(rm.StoreError, match="holds asperities; a page is of a result or a fit"):
-        rm.write_report(rm.generate(scene(asperities=FEW)), tmp_path / "page.html")
+        rm.write_report(rm.generate(FEW, seed=1), tmp_path / "page.html")
 
 
 @pytest.mark.large

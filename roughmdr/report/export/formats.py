@@ -71,10 +71,10 @@ static inline double ROUGH_{VALUE}(double x, double *slope)
 _SEARCH = """\
     }};
     size_t first = 0, last = {count} - 1;
-    double s = 0.0, y = table[0][1];
+    double s = 0.0, y = 0.0;
     if (!(x <= table[last][0])) {{
         s = y = NAN;
-    }} else if (x > table[0][0]) {{
+    }} else if (x >= table[0][0]) {{
         while (last - first > 1) {{
             const size_t middle = (first + last) / 2;
             if (table[middle][0] <= x)
@@ -91,9 +91,9 @@ _SEARCH = """\
 }}
 #undef ROUGH_{VALUE}"""
 _IN_C = (
-    "rough_{value}(x, slope) in C99 and C++11: the value at x and, where slope is no null pointer, its derivative; "
-    "constant before the first point, NAN beyond the last, where the law is not known; to give it another name, define "
-    "ROUGH_{VALUE} before #include"
+    "rough_{value}(x, slope) in C99 and C++11: the value at x and, where slope is no null pointer, its derivative; 0 "
+    "before the first point, NAN beyond the last, where the law is not known; to be included once in a source file; to "
+    "give the function another name, and to include two tables, define ROUGH_{VALUE} before #include"
 )
 
 

@@ -13,6 +13,7 @@ from roughmdr.schema.wording import escape_controls
 from roughmdr.storage.result_file import EXPORT_MARK
 
 _WIDTH = 108  # characters of a line of the header; CalculiX and Abaqus read more
+_GOES_ON = ("\\", "??/")  # ends of lines of C that go on in the next, comments too
 _LIST_WIDTH = 116  # characters of a line of a list of numbers
 
 
@@ -78,7 +79,7 @@ def _comments(document: Document, form: Format) -> Iterator[str]:
         spelled = escape_controls(text).replace("\n", "; ").replace("±", "+/-").replace("µ", "u")
         plain = spelled.encode("ascii", "backslashreplace").decode()
         for line in textwrap.wrap(f"{name}: {plain}", _WIDTH, subsequent_indent="    "):
-            yield f"{form.comment} {line}"
+            yield f"{form.comment} {line}{'.' * line.endswith(_GOES_ON)}"
 
 
 def _listed(column: Column) -> str:
