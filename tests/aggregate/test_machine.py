@@ -173,7 +173,7 @@ def test_random_ensembles_follow_the_slow_and_plain_path(data) -> None:
 
 @pytest.mark.large
 @given(st.data())
-@settings(deadline=None, max_examples=40)
+@settings(deadline=None, max_examples=15)
 def test_many_random_ensembles_follow_the_slow_and_plain_path(data) -> None:
     compare(*random_paths(data))
 

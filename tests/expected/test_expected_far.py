@@ -251,13 +251,7 @@ def of_all_families(seed: int, scenes: int) -> None:
 
 @pytest.mark.large
 def test_random_distributions_of_scipy() -> None:
-    of_all_families(2026, 25)
-
-
-@pytest.mark.large
-@pytest.mark.parametrize("seed", [1, 2])
-def test_many_random_distributions_of_scipy(seed: int) -> None:
-    of_all_families(seed, 75)
+    of_all_families(2026, 40)
 
 
 @pytest.mark.parametrize(

@@ -120,9 +120,13 @@ def test_a_misfit_is_no_correlated_noise(true: str, fitted: str) -> None:
 
 
 @pytest.mark.large
-@pytest.mark.parametrize("rho", [0.3, 0.6, 0.9])
 @pytest.mark.parametrize(
-    ("kind", "free", "draws"), [("hertz", [MODULUS, OFFSET], 100), ("jkr", [MODULUS, WORK, OFFSET], 10)]
+    ("kind", "free", "draws", "rho"),
+    [
+        ("hertz", [MODULUS, OFFSET], 100, 0.3),
+        ("hertz", [MODULUS, OFFSET], 100, 0.9),
+        ("jkr", [MODULUS, WORK, OFFSET], 10, 0.6),
+    ],
 )
 def test_intervals_of_tips_hold_true_values(kind: str, free: list[str], draws: int, rho: float) -> None:
     """In 92 to 98 % of 100 draws, by whose chance a parameter has a standard deviation more or less."""

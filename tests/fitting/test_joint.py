@@ -164,9 +164,9 @@ def test_the_curve_that_is_farthest_off_is_named(monkeypatch: pytest.MonkeyPatch
 @pytest.mark.parametrize("noise", ["constant", "proportional", "alternating"])
 @pytest.mark.parametrize("columns", [["separation", "force", "force_error"], ["separation", "force"]])
 def test_intervals_of_a_shared_parameter_hold_it(columns: list[str], noise: str) -> None:
-    """60 draws of three curves: within three standard deviations of 95 %, for the shared one and the own ones."""
+    """20 draws of three curves: within three standard deviations of 95 %, for the shared one and the own ones."""
     hits, own = list[bool](), list[bool]()
-    for seed in range(60):
+    for seed in range(20):
         fit = stated([each[columns] for each in curves(1000 + seed, noise)], shared=[MODULUS])
         hits.append(inside(fit, MODULUS, 1e6))
         own += [inside(fit.isel(curve=i), OFFSET, offset) for i, offset in enumerate(OFFSETS)]

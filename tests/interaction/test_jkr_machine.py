@@ -156,7 +156,7 @@ def random_case(seed: int) -> tuple[xr.Dataset, dict, np.ndarray, float]:
     return data, material, turns, 2.0 * modulus * a0 * kappa * count
 
 
-@pytest.mark.parametrize("seed", [0, *map(large, range(1, 41))])
+@pytest.mark.parametrize("seed", [0, *map(large, range(1, 13))])
 def test_random_ensembles_stand_where_the_demand_is_met_first(seed: int) -> None:
     data, material, turns, stiffness = random_case(seed)
     steps = np.concatenate([np.linspace(a, b, 6)[:-1] for a, b in pairwise(turns)])

@@ -241,7 +241,7 @@ def test_random_contacts_are_in_stable_equilibrium(seed: int) -> None:
 
 
 @pytest.mark.large
-@pytest.mark.parametrize("seed", range(24, 500))
+@pytest.mark.parametrize("seed", range(24, 150))
 def test_more_random_contacts_are_in_stable_equilibrium(seed: int) -> None:
     check_random(seed)
 
