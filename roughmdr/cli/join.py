@@ -7,13 +7,13 @@ from typing import Any
 import click
 
 from roughmdr.cli.invocation import command_line, without_garbage_collection
-from roughmdr.cli.options import OUTPUT, fresh_option, json_option, workers_option
+from roughmdr.cli.options import FILE, fresh_option, json_option, workers_option
 from roughmdr.cli.run import backend, print_done
 from roughmdr.cli.terminal import Command
 
 
 @click.command(cls=Command)
-@click.argument("output", type=OUTPUT)
+@click.argument("output", type=FILE)
 @workers_option
 @fresh_option
 @click.option("--quiet", is_flag=True, help="Print nothing but errors.")

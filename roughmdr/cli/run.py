@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from roughmdr.cli.invocation import command_line, without_garbage_collection
-from roughmdr.cli.options import FILE, OUTPUT, changes_option, json_option, workers_option
+from roughmdr.cli.options import FILE, changes_option, json_option, workers_option
 from roughmdr.cli.terminal import INCOMPLETE, Command, print_document, print_text
 from roughmdr.errors import RoughmdrError
 
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 @click.command(cls=Command)
 @click.argument("scene", type=FILE)
-@click.option("-o", "--output", type=OUTPUT, required=True, help="netCDF file to write.")
+@click.option("-o", "--output", type=FILE, required=True, help="netCDF file, or Zarr store, to write.")
 @changes_option
 @workers_option
 @click.option(

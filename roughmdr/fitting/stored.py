@@ -12,7 +12,7 @@ import numpy as np
 from roughmdr.errors import RoughmdrError, StoreError, level_outside
 from roughmdr.fitting.words import COMPARED, curve_names, is_open
 from roughmdr.storage.labelled import Array, Labelled
-from roughmdr.storage.netcdf_reading import read_netcdf
+from roughmdr.storage.reading import read_arrays
 from roughmdr.storage.result_file import FIT, is_fit
 from roughmdr.storage.result_form import Form, attribute_faults, is_text, refuse, with_units
 from roughmdr.storage.result_scene import scene_faults
@@ -30,7 +30,7 @@ _OF_MANY |= {"branch": Form(("curve", "point"), "text", "")}
 def read_fit(path: Path) -> Labelled:
     """Return the file of a fit; StoreError if it is none, or not as ``fit`` writes it."""
     try:
-        data = read_netcdf(path)
+        data = read_arrays(path)
     except RoughmdrError as error:
         raise StoreError(f"{path}: {error}") from None
     if data.attrs.get("kind") != FIT:

@@ -11,7 +11,7 @@ from roughmdr.fitting.stored import as_fit
 from roughmdr.result.view import ResultView
 from roughmdr.schema.wording import short_repr
 from roughmdr.storage.labelled import Labelled
-from roughmdr.storage.netcdf_reading import read_netcdf
+from roughmdr.storage.reading import read_arrays
 from roughmdr.storage.result_file import FIT
 from roughmdr.storage.result_validation import as_result
 
@@ -79,7 +79,7 @@ def drawable(source: "str | Path | xr.Dataset") -> Drawable:
     if isinstance(source, str | os.PathLike):
         file = Path(source)
         try:
-            data = read_netcdf(file)
+            data = read_arrays(file)
         except RoughmdrError as error:
             raise StoreError(f"{file}: {error}") from None
     elif hasattr(source, "data_vars"):

@@ -14,7 +14,7 @@ from roughmdr.schema.quantities import adheres
 from roughmdr.schema.toml_text import parse_toml
 from roughmdr.schema.units import format_quantity
 from roughmdr.stages import stages_in
-from roughmdr.storage.labelled import Array, Labelled
+from roughmdr.storage.labelled import Array, Labelled, texts_as_objects
 from roughmdr.variables import (
     AUXILIARY_COORDINATES,
     DONE,
@@ -114,7 +114,7 @@ class ResultView:
     @cached_property
     def branches(self) -> NDArray[np.str_]:
         """The branch of each step."""
-        return np.asarray(self.coordinates["branch"].values, dtype=str)
+        return texts_as_objects(self.coordinates["branch"].values).astype(str)
 
     @cached_property
     def legs(self) -> list[Leg]:

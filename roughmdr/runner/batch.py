@@ -28,9 +28,10 @@ from roughmdr.runner.cluster import Cluster
 from roughmdr.runner.local import Pool, Serial, Sink, Threads
 from roughmdr.runner.progress import Progress, progress, tell_compiling
 from roughmdr.runner.signals import Interrupted, interruptible
-from roughmdr.storage.files import NETCDF_ENDINGS, check_ending, check_writable, destination
+from roughmdr.storage.files import NETCDF_ENDINGS, ZARR_ENDING, check_ending, check_writable, destination
 from roughmdr.storage.labelled import Labelled
 from roughmdr.storage.memory import check_memory, describe_available_memory
+from roughmdr.storage.zarr_store import package as zarr_package
 from roughmdr.variables import FAILED
 
 _FORCE = "force"
@@ -65,7 +66,8 @@ def begun(plan: Plan, target: Path | None, share: Share | None = None, *, resume
     """
     if target is not None:
         check_writable(target, plan.scene.inputs)
-        check_ending(target, "result", NETCDF_ENDINGS)
+        if check_ending(target, "result", (*NETCDF_ENDINGS, ZARR_ENDING)) == ZARR_ENDING:
+            zarr_package(target)
         target = destination(target)
     rounds, own = Rounds(plan), target if target is None or share is None else share.beside(target)
     with ExitStack() as stack:

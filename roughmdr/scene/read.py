@@ -19,8 +19,8 @@ from roughmdr.scene.sweep import flatten
 from roughmdr.schema.toml_text import key_lines, line_of, parse_toml, unquote_key
 from roughmdr.schema.units import as_text
 from roughmdr.schema.wording import printable, short_repr
-from roughmdr.storage.files import check_regular_file, is_open_pipe
-from roughmdr.storage.netcdf_reading import read_attribute, read_dimensions
+from roughmdr.storage.files import check_regular_file, is_open_pipe, is_zarr
+from roughmdr.storage.reading import read_attribute, read_dimensions
 
 _NETCDF_MAGIC = (b"\x89HDF", b"CDF")
 _MAX_BYTES = 2**24
@@ -86,6 +86,8 @@ def _read_table(source: object) -> tuple[Path | None, str, str, dict[str, Any]]:
 
 def _read_text(path: Path) -> str:
     """Return the TOML in a file, a pipe or a result."""
+    if is_zarr(path):
+        return _scene_of_result(path, "a Zarr store")
     try:
         if not is_open_pipe(path):
             check_regular_file(path)
@@ -98,19 +100,23 @@ def _read_text(path: Path) -> str:
     except RoughmdrError as error:
         raise SceneError(f"{path}: {error}") from None
     if content.startswith(_NETCDF_MAGIC):
-        try:
-            text, arrays = read_attribute(path, "scene"), read_dimensions(path)
-        except RoughmdrError as error:
-            raise SceneError(f"{path}: a netCDF file, but no result of roughmdr with a scene in it ({error})") from None
-        if "failure" in arrays:
-            raise SceneError(f"{path}: has fits of many curves, each of another scene: fit one alone to have its own")
-        return text
+        return _scene_of_result(path, "a netCDF file")
     if len(content) > _MAX_BYTES:
         raise SceneError(f"{path}: is longer than {_MAX_BYTES} bytes, the most that a scene can have")
     try:
         return content.decode("utf-8-sig")
     except UnicodeDecodeError:
         raise SceneError(f"{path}: not a text file; a scene is TOML in UTF-8") from None
+
+
+def _scene_of_result(path: Path, kind: str) -> str:
+    try:
+        text, arrays = read_attribute(path, "scene"), read_dimensions(path)
+    except RoughmdrError as error:
+        raise SceneError(f"{path}: {kind}, but no result of roughmdr with a scene in it ({error})") from None
+    if "failure" in arrays:
+        raise SceneError(f"{path}: has fits of many curves, each of another scene: fit one alone to have its own")
+    return text
 
 
 def _unquoted_unit_hint(message: str, text: str) -> str:

@@ -1,5 +1,6 @@
 """Inputs must be regular files or open pipes; an output appears whole or not at all, and nothing is left behind."""
 
+import ctypes
 import os
 import stat
 import tempfile
@@ -11,6 +12,8 @@ from pathlib import Path
 from roughmdr.errors import RoughmdrError, StoreError
 
 NETCDF_ENDINGS = (".nc", ".nc4", ".cdf", ".netcdf")
+ZARR_ENDING = ".zarr"
+_THIS_FOLDER, _EXCHANGE = -100, 2  # AT_FDCWD and RENAME_EXCHANGE of Linux (renameat2(2))
 _UMASK_LOCK = threading.Lock()
 _TEMPORARY_PREFIX = ".roughmdr."
 
@@ -66,9 +69,12 @@ def check_writable(path: Path, inputs: Iterable[Path] = ()) -> None:
     target = destination(path)
     label = f"{path}" if target == path else f"{path} (a link to {target})"
     try:
-        if target.is_dir():
+        if target.suffix.lower() == ZARR_ENDING:
+            if target.exists() and not is_zarr(target) and not (target.is_dir() and not any(target.iterdir())):
+                raise StoreError(f"{label}: is no Zarr store; the output must be one, or not be there")
+        elif target.is_dir():
             raise StoreError(f"{label}: is a folder; the output must be a file")
-        if target.exists() and not target.is_file():
+        elif target.exists() and not target.is_file():
             raise StoreError(f"{label}: is not a regular file; the output must be one")
         if target.exists() and any(other.exists() and target.samefile(other) for other in inputs):
             raise StoreError(f"{label}: is an input; the output must be another file")
@@ -79,6 +85,11 @@ def check_writable(path: Path, inputs: Iterable[Path] = ()) -> None:
         tempfile.TemporaryFile(dir=target.parent).close()  # without a name where it can, so that a kill leaves none
     except OSError as error:
         raise StoreError(f"{label}: cannot be written: {error.strerror}") from None
+
+
+def is_zarr(path: Path) -> bool:
+    """Return whether ``path`` is the folder of a Zarr store, of format 3, or of format 2, which others write."""
+    return any(os.path.isfile(path / name) for name in ("zarr.json", ".zgroup"))
 
 
 def check_ending(path: Path, kind: str, endings: Sequence[str]) -> str:
@@ -126,6 +137,45 @@ def replace_atomically(path: Path, folder: Path | None = None) -> Iterator[Path]
             sync_folder(path.parent)
         finally:
             temporary.unlink(missing_ok=True)
+
+
+@contextmanager
+def replace_folder_atomically(path: Path, folder: Path | None = None) -> Iterator[Path]:
+    """Yield a temporary folder to write to, as ``replace_atomically`` does a file.
+
+    Where the system cannot exchange two names, nothing is at ``path`` for a moment.
+    """
+    check_writable(path)
+    path = destination(path)
+    with (
+        convert_os_errors(path),
+        tempfile.TemporaryDirectory(
+            prefix=_TEMPORARY_PREFIX, suffix=".tmp", dir=folder or path.parent, ignore_cleanup_errors=True
+        ) as temporary,
+    ):
+        new, old = Path(temporary, "new"), Path(temporary, "old")
+        new.mkdir()
+        yield new
+        for each in (new, *new.rglob("*")):
+            descriptor = os.open(each, os.O_RDONLY)
+            try:
+                os.fsync(descriptor)
+            finally:
+                os.close(descriptor)
+        if not (path.exists() and _exchange(new, path)):
+            if path.exists():
+                path.rename(old)
+            new.rename(path)
+        sync_folder(path.parent)
+
+
+def _exchange(one: Path, other: Path) -> bool:
+    """Exchange two names in one step; return whether the system could."""
+    try:
+        rename = ctypes.CDLL(None).renameat2
+    except (AttributeError, OSError, TypeError):  # another system than Linux, or an old one
+        return False
+    return bool(rename(_THIS_FOLDER, os.fsencode(one), _THIS_FOLDER, os.fsencode(other), _EXCHANGE) == 0)
 
 
 def _umask() -> int:

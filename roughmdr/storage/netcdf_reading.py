@@ -19,7 +19,6 @@ from roughmdr.errors import RoughmdrError
 from roughmdr.storage.files import check_regular_file
 from roughmdr.storage.labelled import Array, Labelled
 from roughmdr.storage.memory import check_memory
-from roughmdr.variables import AUXILIARY_COORDINATES, STEP_COORDINATES
 
 if TYPE_CHECKING:
     import netCDF4
@@ -34,35 +33,22 @@ def read_netcdf(path: Path) -> Labelled:
     """Return a whole file; RoughmdrError if it cannot be read."""
     with _open(path) as file:
         file.set_auto_mask(False)
-        arrays, coordinates = {}, {*file.dimensions, *AUXILIARY_COORDINATES}
+        arrays = {}
         for name, variable in file.variables.items():
             attrs = {key: variable.getncattr(key) for key in variable.ncattrs()}
-            text = attrs.pop("coordinates", "")
-            named = set(text.split()) if isinstance(text, str) else set()
-            coordinates |= named
-            if "separation" not in named and not named.isdisjoint(STEP_COORDINATES):  # a machine moves the flat
-                coordinates.discard("separation")
-            attrs.pop("_FillValue", None)
             arrays[name] = Array(variable.dimensions, _read_values(variable), attrs)
             if arrays[name].values.ndim != len(variable.dimensions):  # characters of a string, in the classic format
                 raise ValueError(f"{name} is an array of characters; it must be one of netCDF-4 strings")
-        return Labelled(
-            {name: array for name, array in arrays.items() if name not in coordinates},
-            {name: array for name, array in arrays.items() if name in coordinates},
-            {key: file.getncattr(key) for key in file.ncattrs()},
-        )
+        return Labelled.of_file(arrays, {key: file.getncattr(key) for key in file.ncattrs()})
 
 
-def read_attribute(path: Path, name: str) -> str:
-    """Return one attribute of a file; RoughmdrError if it cannot be read, or is missing, or is no string."""
+def read_netcdf_attributes(path: Path) -> dict[str, Any]:
+    """Return the attributes of a file; RoughmdrError if it cannot be read."""
     with _open(path) as file:
-        value = file.getncattr(name) if name in file.ncattrs() else None
-    if not isinstance(value, str):
-        raise RoughmdrError(f"it has no {name}" if value is None else f"the attribute {name} is no text")
-    return value
+        return {name: file.getncattr(name) for name in file.ncattrs()}
 
 
-def read_dimensions(path: Path) -> dict[str, tuple[str, ...]]:
+def read_netcdf_dimensions(path: Path) -> dict[str, tuple[str, ...]]:
     """Return the dimensions of each array of a file; RoughmdrError if it cannot be read."""
     with _open(path) as file:
         return {name: variable.dimensions for name, variable in file.variables.items()}

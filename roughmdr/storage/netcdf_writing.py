@@ -60,7 +60,6 @@ def write_arrays(data: Labelled, path: Path) -> None:
 
 def _define(file: "netCDF4.Dataset", data: Labelled) -> None:
     """Write everything but the values."""
-    auxiliary = {name: set(array.dims) for name, array in data.coordinates.items() if array.dims != (name,)}
     file.setncatts(data.attrs)
     for dimension, size in data.sizes.items():
         file.createDimension(dimension, size)
@@ -68,10 +67,7 @@ def _define(file: "netCDF4.Dataset", data: Labelled) -> None:
         kind = array.values.dtype.kind
         fill = np.nan if kind == "f" and name in data.variables else None
         variable = file.createVariable(name, str if kind in "OU" else array.values.dtype, array.dims, fill_value=fill)
-        variable.setncatts(array.attrs)
-        matching = [other for other, dims in auxiliary.items() if dims <= set(array.dims)]
-        if name in data.variables and matching:
-            variable.coordinates = " ".join(matching)
+        variable.setncatts(data.attributes_in_file(name))
 
 
 def _reserve(path: Path, size: int) -> None:

@@ -11,7 +11,7 @@ import numpy as np
 
 from roughmdr.errors import RoughmdrError, StoreError
 from roughmdr.storage.labelled import Labelled
-from roughmdr.storage.netcdf_reading import read_attribute, read_dimensions, read_netcdf
+from roughmdr.storage.reading import read_arrays, read_attribute, read_dimensions
 from roughmdr.storage.result_validation import as_result
 
 FIT = "fit"
@@ -41,7 +41,7 @@ def _versions() -> tuple[str, str]:
 def read_result(path: Path) -> Labelled:
     """Return a result file, loaded; StoreError if it is none."""
     try:
-        data = read_netcdf(path)
+        data = read_arrays(path)
     except RoughmdrError as error:
         raise StoreError(f"{path}: {error}") from None
     if data.attrs.get("kind") == FIT:
@@ -60,7 +60,7 @@ def check_nothing_lost(path: Path, ensemble: Labelled) -> None:
     """Raise StoreError if there are other asperities at ``path`` than those of ``ensemble``, bit for bit."""
     if not path.exists():
         return
-    old = read_netcdf(path)
+    old = read_arrays(path)
     before, after = (file.variables | file.coordinates for file in (old, ensemble))
     alike = old.attrs.get("shape") == ensemble.attrs["shape"] and before.keys() == after.keys()
     if not (alike and all(np.array_equal(array.values, after[name].values) for name, array in before.items())):

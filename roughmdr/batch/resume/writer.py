@@ -10,8 +10,10 @@ from roughmdr.batch.resume.keys import versions
 from roughmdr.batch.resume.store import CheckpointStore, locked_store, store_folder
 from roughmdr.batch.task_result import TaskResult
 from roughmdr.errors import StoreError
+from roughmdr.storage.files import ZARR_ENDING
 from roughmdr.storage.labelled import Labelled
 from roughmdr.storage.netcdf_writing import write_netcdf
+from roughmdr.storage.zarr_store import write_zarr
 from roughmdr.variables import FAILED
 
 _MAX_NAME = 255  # bytes of a file's name
@@ -90,7 +92,8 @@ class CheckpointWriter:
         folder = None if self.store is None else self.store.folder  # the next run removes what is left behind there
         if folder is not None and folder.stat().st_dev != self.target.parent.stat().st_dev:
             folder = None  # a result cannot be renamed from one disk to another
-        write_netcdf(result, self.target, folder)
+        write = write_zarr if self.target.suffix.lower() == ZARR_ENDING else write_netcdf
+        write(result, self.target, folder)
         for store in [*([] if self.store is None else [self.store]), *self.joined] if complete else []:
             store.clear()
 

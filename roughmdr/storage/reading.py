@@ -1,0 +1,27 @@
+"""Reading the arrays of a file, whatever its format: netCDF, or the folder of a Zarr store."""
+
+from pathlib import Path
+
+from roughmdr.errors import RoughmdrError
+from roughmdr.storage.files import is_zarr
+from roughmdr.storage.labelled import Labelled
+from roughmdr.storage.netcdf_reading import read_netcdf, read_netcdf_attributes, read_netcdf_dimensions
+from roughmdr.storage.zarr_store import read_zarr, read_zarr_attributes, read_zarr_dimensions
+
+
+def read_arrays(path: Path) -> Labelled:
+    """Return all of a file; RoughmdrError if it cannot be read."""
+    return read_zarr(path) if is_zarr(path) else read_netcdf(path)
+
+
+def read_dimensions(path: Path) -> dict[str, tuple[str, ...]]:
+    """Return the dimensions of each array of a file; RoughmdrError if it cannot be read."""
+    return read_zarr_dimensions(path) if is_zarr(path) else read_netcdf_dimensions(path)
+
+
+def read_attribute(path: Path, name: str) -> str:
+    """Return one attribute of a file; RoughmdrError if it cannot be read, or is missing, or is no string."""
+    value = (read_zarr_attributes(path) if is_zarr(path) else read_netcdf_attributes(path)).get(name)
+    if not isinstance(value, str):
+        raise RoughmdrError(f"it has no {name}" if value is None else f"the attribute {name} is no text")
+    return value

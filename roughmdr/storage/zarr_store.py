@@ -1,0 +1,131 @@
+"""Zarr stores: a result as a folder of compressed chunks, of which xarray reads those that are needed."""
+
+import math
+import warnings
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from roughmdr.errors import RoughmdrError, StoreError
+from roughmdr.storage.files import replace_folder_atomically
+from roughmdr.storage.labelled import Array, Labelled, texts_as_objects
+from roughmdr.storage.memory import check_memory
+from roughmdr.variables import LAW_VARIABLES
+
+if TYPE_CHECKING:
+    import zarr
+
+_DIMENSIONS = "_ARRAY_DIMENSIONS"
+"""Attribute of format 2 with the names of the dimensions, as xarray writes it."""
+_CHUNK_SIZE = 2**18  # most elements of a chunk, 2 MB of numbers: Zarr advises at least 1 MB, uncompressed
+
+
+def write_zarr(data: Labelled, path: Path, folder: Path | None = None) -> None:
+    """Write ``data`` to ``path`` by way of a temporary folder in ``folder``, beside ``path`` by default.
+
+    StoreError if that fails, and where the package zarr is missing.
+    """
+    zarr = package(path)
+    # Warnings are of texts and of common metadata, which later versions of the format may store in other ways.
+    with replace_folder_atomically(path, folder) as temporary, warnings.catch_warnings(action="ignore"):
+        group = zarr.open_group(temporary, mode="w", zarr_format=3)
+        group.attrs.update({name: _plain(value) for name, value in data.attrs.items()})
+        for name, array in (data.coordinates | data.variables).items():
+            _write(group, name, array, {key: _plain(value) for key, value in data.attributes_in_file(name).items()})
+        zarr.consolidate_metadata(temporary)
+
+
+def _write(group: "zarr.Group", name: str, array: Array, attrs: dict[str, Any]) -> None:
+    values = array.values
+    is_text, chunks = values.dtype.kind in "OU", _chunks(values.shape)
+    stored = group.create_array(
+        name,
+        shape=values.shape,
+        chunks=chunks,
+        dtype=str if is_text else values.dtype,
+        fill_value=math.nan if values.dtype.kind == "f" else None,
+        attributes=attrs,
+        dimension_names=array.dims,
+    )
+    for first in np.ndindex(*(-(-size // chunk) for size, chunk in zip(values.shape, chunks, strict=True))):
+        block = tuple(slice(i * chunk, (i + 1) * chunk) for i, chunk in zip(first, chunks, strict=True))
+        part = np.asarray(values[block])
+        stored[block] = part.astype(object) if is_text else part
+
+
+def _chunks(shape: tuple[int, ...]) -> tuple[int, ...]:
+    """Return the chunks of an array: all steps of as many realisations, and cells, as a chunk holds."""
+    chunks, room = list[int](), _CHUNK_SIZE
+    for size in reversed(shape):
+        chunks.insert(0, max(1, min(size, room)))
+        room //= chunks[0]
+    return tuple(chunks)
+
+
+def _plain(value: Any) -> Any:
+    """Return an attribute as JSON has it."""
+    return value.tolist() if isinstance(value, np.ndarray | np.generic) else value
+
+
+def read_zarr(path: Path) -> Labelled:
+    """Return a whole store; RoughmdrError if it cannot be read."""
+    with _opened(path) as group:
+        arrays = {name: _read(stored) for name, stored in sorted(group.arrays(), key=lambda each: _place(each[0]))}
+        return Labelled.of_file(arrays, dict(group.attrs))
+
+
+def read_zarr_attributes(path: Path) -> dict[str, Any]:
+    """Return the attributes of a store; RoughmdrError if it cannot be read."""
+    with _opened(path) as group:
+        return dict(group.attrs)
+
+
+def read_zarr_dimensions(path: Path) -> dict[str, tuple[str, ...]]:
+    """Return the dimensions of each array of a store; RoughmdrError if it cannot be read."""
+    with _opened(path) as group:
+        return {name: _dimensions(stored) for name, stored in group.arrays()}
+
+
+@contextmanager
+def _opened(path: Path) -> Iterator["zarr.Group"]:
+    zarr = package(path)
+    try:
+        with warnings.catch_warnings(action="ignore"):
+            yield zarr.open_group(path, mode="r")
+    except Exception as error:  # a damaged or foreign store can make the library raise anything
+        raise RoughmdrError(f"not a Zarr store that can be read ({error})") from None
+
+
+def package(path: Path) -> Any:
+    """Return the package zarr; StoreError, which tells how to install it, where it is missing."""
+    try:
+        import zarr
+    except ImportError:
+        raise StoreError(f"{path}: Zarr stores need a package: pip install 'roughmdr[zarr]'") from None
+    return zarr
+
+
+def _read(stored: "zarr.Array[Any]") -> Array:
+    dims = _dimensions(stored)
+    check_memory(stored.size * max(stored.dtype.itemsize, 1), f"the array {stored.basename}")
+    values = texts_as_objects(np.asarray(stored[...]))
+    attrs = {key: np.array(value) if isinstance(value, list) else value for key, value in stored.attrs.items()}
+    attrs.pop(_DIMENSIONS, None)
+    if len(dims) != values.ndim:
+        raise ValueError(f"{stored.basename} has no names of its dimensions")
+    return Array(dims, values, attrs)
+
+
+def _place(name: str) -> tuple[int, str]:
+    """Return the place of an array among others, which a store holds in no order: of variables as they are declared."""
+    declared = [*LAW_VARIABLES]
+    own = next((each for each in (name, name.rpartition("_")[0]) if each in LAW_VARIABLES), None)
+    return (len(declared) if own is None else declared.index(own)), name
+
+
+def _dimensions(stored: "zarr.Array[Any]") -> tuple[str, ...]:
+    names: Any = getattr(stored.metadata, "dimension_names", None) or stored.attrs.get(_DIMENSIONS, ())
+    return tuple(map(str, names))
