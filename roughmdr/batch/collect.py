@@ -9,6 +9,7 @@ from roughmdr.batch.moments import MEAN, ROWS, KnownMoments, Moments, MomentTree
 from roughmdr.batch.task_result import Columns, Row, TaskResult, merge, merge_rows, not_run
 from roughmdr.loading.pull_off import PullOff
 from roughmdr.numerics.arguments import Floats
+from roughmdr.storage.room import Room
 from roughmdr.variables import FAILED, NOT_RUN
 
 
@@ -25,13 +26,16 @@ class CollectedResults(NamedTuple):
 class Collector:
     """Results so far: as curves, or as moments, which take no more memory the more realisations there are.
 
-    Moments are kept beside curves too where a variable is ``watched``.
+    Moments are kept beside curves too where a variable is ``watched``; curves take ``room``.
     """
 
-    def __init__(self, variables: Sequence[str], steps: int, *, keep_moments: bool, watched: str | None = None) -> None:
+    def __init__(
+        self, variables: Sequence[str], steps: int, room: Room, *, keep_moments: bool, watched: str | None = None
+    ) -> None:
         self._variables, self._shape, self._keep_moments = tuple(variables), (len(variables), steps), keep_moments
         self._watched = None if watched is None else self._variables.index(watched)
         self._results: list[TaskResult] = []
+        self._room = room
         self._trees: dict[str, MomentTree[Moments]] = {}
         self._pull_offs: dict[str, MomentTree[KnownMoments]] = {}
         self._diagnostics: dict[str, Row] = {}
@@ -40,7 +44,7 @@ class Collector:
     def add(self, result: TaskResult) -> None:
         """Add the result of a task."""
         if not self._keep_moments:
-            self._results.append(result)
+            self._results.append(result._replace(moments=tuple(map(self._room.keep, result.moments))))
             if self._watched is None:
                 return
         rows_of: dict[str, list[int]] = {}
@@ -91,7 +95,8 @@ class Collector:
             cells_of.setdefault(key, []).append(cell)
         count = np.array([count for _, count in cells])
         shape = len(cells), int(count.max())
-        curves, diagnostics = np.full((*shape, *self._shape), np.nan), not_run(shape)
+        curves, diagnostics = self._room.empty((*shape, *self._shape)), not_run(shape)
+        curves.fill(np.nan)
         pull_offs = np.full((*shape, len(PullOff._fields)), np.nan)
         while self._results:
             result = self._results.pop()

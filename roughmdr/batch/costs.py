@@ -13,6 +13,7 @@ from roughmdr.kernels.adhesion import Adhesion
 from roughmdr.loading.machine import MachinePath, legs_of
 from roughmdr.scene import Scene
 from roughmdr.shapes import SHAPES, TabledShape
+from roughmdr.storage.room import IN_MEMORY
 from roughmdr.variables import LOSSES
 
 START_UP = 1.2
@@ -189,9 +190,14 @@ def file_bytes(plan: Plan, runs: int) -> int:
     return _STEP_IN_FILE * plan.steps + _value_bytes(plan, runs)
 
 
-def result_bytes(plan: Plan, runs: int) -> int:
-    """Return the memory [byte] while the result is assembled: runs as they came, and in their places."""
-    return _BRANCH * plan.steps + 2 * _value_bytes(plan, runs)
+def result_bytes(plan: Plan, runs: int, *, in_file: bool = True) -> int:
+    """Return the memory [byte] while the result is assembled: runs as they came, and in their places.
+
+    Of a result that is written to a file, curves beyond some are not in memory.
+    """
+    values = _value_bytes(plan, runs)
+    kept_on_disk = in_file and plan.scene.output.keep == "curves"
+    return _BRANCH * plan.steps + 2 * (min(values, IN_MEMORY) if kept_on_disk else values)
 
 
 def ensemble_bytes(plan: Plan) -> float:

@@ -14,6 +14,8 @@ from numpy.typing import NDArray
 
 from roughmdr.numerics.arguments import Floats
 
+_AT_ONCE = 2**20  # most numbers that are merged at once, 8 MB, of which five copies stand in memory
+
 
 class Moments(NamedTuple):
     """Number, mean, standard deviation (of these, not an estimate for all that could be drawn), minimum and maximum."""
@@ -104,10 +106,18 @@ def dyadic_blocks(first: int, last: int) -> Iterator[tuple[int, int]]:
 def block_moments(first: int, values: Floats) -> Iterator[tuple[int, Moments]]:
     """Yield the first realisation and the moments of each block of ``values`` [realization, ...], from ``first`` on."""
     for begin, count in dyadic_blocks(first, first + len(values)):
-        moments = Moments.of(values[begin - first : begin - first + count])
-        while len(moments.mean) > 1:
-            moments = moments.select(np.s_[0::2]).merged(moments.select(np.s_[1::2]))
-        yield begin, moments.select(0)
+        yield begin, _moments_of_block(values[begin - first : begin - first + count])
+
+
+def _moments_of_block(values: Floats) -> Moments:
+    """Merge neighbours, and those again; the halves of what would take much memory one after the other."""
+    half = len(values) // 2
+    if half and values.size > _AT_ONCE:
+        return _moments_of_block(values[:half]).merged(_moments_of_block(values[half:]))
+    moments = Moments.of(values)
+    while len(moments.mean) > 1:
+        moments = moments.select(np.s_[0::2]).merged(moments.select(np.s_[1::2]))
+    return moments.select(0)
 
 
 def moments_of(values: Floats) -> Moments:

@@ -20,6 +20,7 @@ from roughmdr.errors import RoughmdrError
 from roughmdr.loading.pull_off import PullOff
 from roughmdr.numerics.arguments import Floats
 from roughmdr.scene import Scene
+from roughmdr.storage.room import IN_MEMORY
 from roughmdr.variables import ADHESION_CODES, DONE, FAILED, RUN_DIAGNOSTICS
 
 _SINGLE_TASK = 0.1  # a batch that takes less [s] is one task: to load dask takes as long
@@ -65,7 +66,8 @@ def split_into_tasks(
     else:
         costs, size = [1.0] * len(ranges), float(runs_per_task)
     curve_bytes = 8 * len(variables) * plan.steps
-    max_runs = 2**62 if plan.keeps_statistics or size == math.inf else max(1, _MAX_BYTES // curve_bytes)
+    most = IN_MEMORY if size == math.inf else _MAX_BYTES
+    max_runs = 2**62 if plan.keeps_statistics else max(1, most // curve_bytes)
     groups: list[list[RunRange]] = [[]]
     filled, count = 0.0, 0
     for cost, runs in zip(costs, ranges, strict=True):

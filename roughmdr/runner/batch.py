@@ -31,6 +31,7 @@ from roughmdr.runner.signals import Interrupted, interruptible
 from roughmdr.storage.files import NETCDF_ENDINGS, ZARR_ENDING, check_ending, check_writable, destination
 from roughmdr.storage.labelled import Labelled
 from roughmdr.storage.memory import check_memory, describe_available_memory
+from roughmdr.storage.room import Room
 from roughmdr.storage.zarr_store import package as zarr_package
 from roughmdr.variables import FAILED
 
@@ -100,7 +101,7 @@ def at_work(
         runs = sum(method.realizations for method in beginning.rounds.methods)  # runs in the first round
         if assembled:
             remedy = "fewer steps or realizations, or output.keep = 'statistics', take less"
-            check_memory(result_bytes(plan, runs), "the run", remedy)
+            check_memory(result_bytes(plan, runs, in_file=writer.target is not None), "the run", remedy)
         if backend.is_local:
             asperities = min(backend.workers, runs) * ensemble_bytes(plan)
             check_memory(asperities, "the asperities of the runs in progress", "fewer asperities or workers take less")
@@ -139,7 +140,10 @@ class Batch:
         plan = self._plan
         watched = None if plan.scene.accuracy is None else plan.watched
         self._variables = computed_variables(plan)
-        self._collector = Collector(self._variables, plan.steps, keep_moments=plan.keeps_statistics, watched=watched)
+        room = Room(None if self._writer.target is None else self._writer.target.parent)
+        self._collector = Collector(
+            self._variables, plan.steps, room, keep_moments=plan.keeps_statistics, watched=watched
+        )
 
     def run(self, *, quiet: bool) -> Labelled:
         """Run all rounds; return the result, whose history continues that of the one that it may replace."""

@@ -195,7 +195,8 @@ def _over_dask(
     keys = {f"task-{len(functions) - index:09d}": number for index, number in enumerate(functions)}
     graph = {key: (functions[number],) for key, number in keys.items()}
 
-    def posttask(key: str, result: TaskResult | None, *_: object) -> None:
+    def posttask(key: str, result: TaskResult | None, _graph: object, state: dict[str, Any], _worker: object) -> None:
+        state["cache"][key] = None  # else all results of a batch are in memory
         if result is not None:
             done(keys[key], result)
 

@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from roughmdr.variables import AUXILIARY_COORDINATES, STATED, STEP_COORDINATES
+from roughmdr.variables import STATED
 
 if TYPE_CHECKING:
     import xarray as xr
 
-_TEXTS_AT_ONCE = 2**16
+_TEXTS_AT_ONCE, _BYTES_AT_ONCE = 2**16, 2**23  # most texts, and bytes of numbers, that are copied to be hashed
 RUN_TIME = "run_time"
 """The only variable that depends on the clock."""
 
@@ -51,35 +51,6 @@ class Labelled(NamedTuple):
             }
 
         return cls(arrays(dataset.data_vars), arrays(dataset.coords), dict(dataset.attrs))
-
-    @classmethod
-    def of_file(cls, arrays: Mapping[str, Array], attrs: dict[str, Any]) -> "Labelled":
-        """Tell coordinates from variables: those named as a dimension, declared, or named in ``coordinates`` of others.
-
-        ``arrays`` are those of a file, with all their attributes.
-        """
-        coordinates, own = {dim for array in arrays.values() for dim in array.dims} | {*AUXILIARY_COORDINATES}, {}
-        for name, array in arrays.items():
-            text = array.attrs.get("coordinates", "")
-            named = set(text.split()) if isinstance(text, str) else set()
-            coordinates |= named
-            if "separation" not in named and not named.isdisjoint(STEP_COORDINATES):  # a machine moves the flat
-                coordinates.discard("separation")
-            kept = {key: value for key, value in array.attrs.items() if key not in ("coordinates", "_FillValue")}
-            own[name] = array._replace(attrs=kept)
-        return cls(
-            {name: array for name, array in own.items() if name not in coordinates},
-            {name: array for name, array in own.items() if name in coordinates},
-            attrs,
-        )
-
-    def attributes_in_file(self, name: str) -> dict[str, Any]:
-        """Return the attributes of an array, of a variable with those coordinates that are no dimension."""
-        if name in self.coordinates:
-            return self.coordinates[name].attrs
-        dims, _, attrs = self.variables[name]
-        named = [other for other, each in self.coordinates.items() if each.dims != (other,) and {*each.dims} <= {*dims}]
-        return {**attrs, "coordinates": " ".join(named)} if named else attrs
 
     def checksum(self) -> str:
         """Return a hash of the ``STATED`` attributes and of all arrays but ``run_time``, which depends on the clock."""
@@ -121,7 +92,12 @@ def texts_as_objects(values: NDArray[Any]) -> NDArray[Any]:
 def _bytes_of(values: NDArray[Any]) -> Iterator[bytes | memoryview]:
     """Yield the bytes to hash, part by part: numbers as they are, texts separated by a zero byte."""
     if values.dtype.kind not in "OU":
-        yield np.ascontiguousarray(values).reshape(-1).view(np.uint8).data
+        if values.nbytes > _BYTES_AT_ONCE:
+            half = len(values) // 2
+            for part in (values[:half], values[half:]) if half else (values[0],):
+                yield from _bytes_of(part)
+        else:
+            yield np.ascontiguousarray(values).reshape(-1).view(np.uint8).data
         return
     texts = values.ravel()
     for first in range(0, texts.size, _TEXTS_AT_ONCE):

@@ -16,9 +16,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from roughmdr.errors import RoughmdrError
+from roughmdr.storage.coordinates import labelled_of
 from roughmdr.storage.files import check_regular_file
 from roughmdr.storage.labelled import Array, Labelled
 from roughmdr.storage.memory import check_memory
+from roughmdr.storage.room import Room, beside
 
 if TYPE_CHECKING:
     import netCDF4
@@ -33,13 +35,13 @@ def read_netcdf(path: Path) -> Labelled:
     """Return a whole file; RoughmdrError if it cannot be read."""
     with _open(path) as file:
         file.set_auto_mask(False)
-        arrays = {}
+        arrays, room = {}, beside(path)
         for name, variable in file.variables.items():
             attrs = {key: variable.getncattr(key) for key in variable.ncattrs()}
-            arrays[name] = Array(variable.dimensions, _read_values(variable), attrs)
+            arrays[name] = Array(variable.dimensions, _read_values(variable, room), attrs)
             if arrays[name].values.ndim != len(variable.dimensions):  # characters of a string, in the classic format
                 raise ValueError(f"{name} is an array of characters; it must be one of netCDF-4 strings")
-        return Labelled.of_file(arrays, {key: file.getncattr(key) for key in file.ncattrs()})
+        return labelled_of(arrays, {key: file.getncattr(key) for key in file.ncattrs()})
 
 
 def read_netcdf_attributes(path: Path) -> dict[str, Any]:
@@ -69,8 +71,13 @@ def _open(path: Path) -> "Iterator[netCDF4.Dataset]":
         raise RoughmdrError(f"not a netCDF file that can be read ({reason})") from None
 
 
-def _read_values(variable: "netCDF4.Variable[Any]") -> np.ndarray[Any, Any]:
+def _read_values(variable: "netCDF4.Variable[Any]", room: Room) -> np.ndarray[Any, Any]:
     """Return the values of a variable; equal strings share one object."""
+    if variable.dtype == np.float64:
+        numbers = room.empty(variable.shape)
+        for block in blocks(variable.shape):
+            numbers[block] = variable[block]
+        return numbers
     if variable.dtype is not str:
         return np.asarray(variable[...])
     values, seen = np.empty(variable.shape, dtype=object), dict[str, str]()

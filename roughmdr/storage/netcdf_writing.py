@@ -14,6 +14,7 @@ import numpy as np
 
 from roughmdr.errors import StoreError
 from roughmdr.schema.wording import format_bytes
+from roughmdr.storage.coordinates import attributes_in_file
 from roughmdr.storage.files import replace_atomically
 from roughmdr.storage.labelled import Labelled
 from roughmdr.storage.memory import check_memory
@@ -67,7 +68,7 @@ def _define(file: "netCDF4.Dataset", data: Labelled) -> None:
         kind = array.values.dtype.kind
         fill = np.nan if kind == "f" and name in data.variables else None
         variable = file.createVariable(name, str if kind in "OU" else array.values.dtype, array.dims, fill_value=fill)
-        variable.setncatts(data.attributes_in_file(name))
+        variable.setncatts(attributes_in_file(data, name))
 
 
 def _reserve(path: Path, size: int) -> None:

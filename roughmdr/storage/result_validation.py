@@ -5,8 +5,10 @@ Anyone may have changed the file. A result may hold more than is declared; decla
 
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from roughmdr.storage.labelled import Labelled
 from roughmdr.storage.result_form import (
@@ -156,7 +158,7 @@ def _computed(data: Labelled) -> Iterator[str]:
     whole = (status == DONE) & (marked == 0.0)
     diagnostics = ("run_time", "numerical_error", "reference_points")
     for name in (*diagnostics, *OUTPUT_VARIABLES, *(f"{name}_mean" for name in OUTPUT_VARIABLES)):
-        if name in data.variables and not np.isfinite(data.variables[name].values[whole]).all():
+        if name in data.variables and not _finite(data.variables[name].values, whole):
             yield f"{name} is not finite, and status says that it was computed"
     for name, others in _KNOWN_TOGETHER.items():
         if name in data.variables:
@@ -166,6 +168,12 @@ def _computed(data: Labelled) -> Iterator[str]:
             for other in others:
                 if other in data.variables and not np.isfinite(data.variables[other].values[known]).all():
                     yield f"{other} is not finite where {name} is known"
+
+
+def _finite(values: NDArray[Any], runs: NDArray[np.bool_]) -> bool:
+    """Return whether all numbers of some runs are finite, without a copy of those over the steps."""
+    ends = (values.min(axis=-1), values.max(axis=-1)) if values.ndim > runs.ndim else (values,)
+    return all(bool(np.isfinite(each[runs]).all()) for each in ends)
 
 
 def _pull_offs(data: Labelled) -> Iterator[str]:
@@ -183,10 +191,11 @@ def _magnitudes(data: Labelled) -> Iterator[str]:
             values = data.variables[each].values
             if values.dtype.kind != "f":
                 continue
-            largest = float(np.fmax.reduce(np.abs(values), axis=None, initial=0.0))
+            least = float(np.fmin.reduce(values, axis=None, initial=0.0))
+            largest = max(-least, float(np.fmax.reduce(values, axis=None, initial=0.0)))
             if largest > _LARGEST:
                 yield f"{each} is above {_LARGEST:g} in SI"
-            if name in _NOT_NEGATIVE and (values < -_ROUNDING * largest).any():
+            if name in _NOT_NEGATIVE and least < -_ROUNDING * largest:
                 yield f"{each} must be at least 0"
     for name in [name for name in _COUNTS if name in data.variables]:
         if not np.isfinite(data.variables[name].values).all():

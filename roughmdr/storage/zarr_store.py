@@ -10,9 +10,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from roughmdr.errors import RoughmdrError, StoreError
+from roughmdr.storage.coordinates import attributes_in_file, labelled_of
 from roughmdr.storage.files import replace_folder_atomically
 from roughmdr.storage.labelled import Array, Labelled, texts_as_objects
-from roughmdr.storage.memory import check_memory
+from roughmdr.storage.room import Room, beside
 from roughmdr.variables import LAW_VARIABLES
 
 if TYPE_CHECKING:
@@ -34,7 +35,7 @@ def write_zarr(data: Labelled, path: Path, folder: Path | None = None) -> None:
         group = zarr.open_group(temporary, mode="w", zarr_format=3)
         group.attrs.update({name: _plain(value) for name, value in data.attrs.items()})
         for name, array in (data.coordinates | data.variables).items():
-            _write(group, name, array, {key: _plain(value) for key, value in data.attributes_in_file(name).items()})
+            _write(group, name, array, {key: _plain(value) for key, value in attributes_in_file(data, name).items()})
         zarr.consolidate_metadata(temporary)
 
 
@@ -50,10 +51,15 @@ def _write(group: "zarr.Group", name: str, array: Array, attrs: dict[str, Any]) 
         attributes=attrs,
         dimension_names=array.dims,
     )
-    for first in np.ndindex(*(-(-size // chunk) for size, chunk in zip(values.shape, chunks, strict=True))):
-        block = tuple(slice(i * chunk, (i + 1) * chunk) for i, chunk in zip(first, chunks, strict=True))
+    for block in _blocks(values.shape, chunks):
         part = np.asarray(values[block])
         stored[block] = part.astype(object) if is_text else part
+
+
+def _blocks(shape: tuple[int, ...], chunks: tuple[int, ...]) -> Iterator[tuple[slice, ...]]:
+    """Yield the indices of each chunk."""
+    for first in np.ndindex(*(-(-size // chunk) for size, chunk in zip(shape, chunks, strict=True))):
+        yield tuple(slice(i * chunk, (i + 1) * chunk) for i, chunk in zip(first, chunks, strict=True))
 
 
 def _chunks(shape: tuple[int, ...]) -> tuple[int, ...]:
@@ -73,8 +79,9 @@ def _plain(value: Any) -> Any:
 def read_zarr(path: Path) -> Labelled:
     """Return a whole store; RoughmdrError if it cannot be read."""
     with _opened(path) as group:
-        arrays = {name: _read(stored) for name, stored in sorted(group.arrays(), key=lambda each: _place(each[0]))}
-        return Labelled.of_file(arrays, dict(group.attrs))
+        room, found = beside(path), sorted(group.arrays(), key=lambda each: _place(each[0]))
+        arrays = {name: _read(stored, room) for name, stored in found}
+        return labelled_of(arrays, dict(group.attrs))
 
 
 def read_zarr_attributes(path: Path) -> dict[str, Any]:
@@ -104,14 +111,20 @@ def package(path: Path) -> Any:
     try:
         import zarr
     except ImportError:
-        raise StoreError(f"{path}: Zarr stores need a package: pip install 'roughmdr[zarr]'") from None
+        raise StoreError(
+            f"{path}: Zarr stores need the package zarr: pip install -e '.[zarr]' in the clone of roughmdr"
+        ) from None
     return zarr
 
 
-def _read(stored: "zarr.Array[Any]") -> Array:
+def _read(stored: "zarr.Array[Any]", room: Room) -> Array:
     dims = _dimensions(stored)
-    check_memory(stored.size * max(stored.dtype.itemsize, 1), f"the array {stored.basename}")
-    values = texts_as_objects(np.asarray(stored[...]))
+    if stored.dtype == np.float64:
+        values = room.empty(stored.shape)
+        for block in _blocks(stored.shape, stored.chunks):
+            values[block] = stored[block]
+    else:
+        values = texts_as_objects(np.asarray(stored[...]))
     attrs = {key: np.array(value) if isinstance(value, list) else value for key, value in stored.attrs.items()}
     attrs.pop(_DIMENSIONS, None)
     if len(dims) != values.ndim:

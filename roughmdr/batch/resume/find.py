@@ -1,6 +1,7 @@
 """Finds earlier runs, the result at the output and stored task results, and decides whether they can be reused."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -8,10 +9,11 @@ import numpy as np
 from roughmdr.batch.moments import ROWS as KNOWN_ROWS, KnownMoments
 from roughmdr.batch.plan import Plan
 from roughmdr.batch.resume.keys import changes, versions
-from roughmdr.batch.resume.reusable import ReusableRows
+from roughmdr.batch.resume.reusable import Reader, ReusableRows
 from roughmdr.batch.resume.store import CheckpointStore
 from roughmdr.batch.task_result import TaskResult, complete
 from roughmdr.errors import StoreError
+from roughmdr.numerics.arguments import Ints
 from roughmdr.scene.identity import LAYOUT
 from roughmdr.schema.toml_text import parse_toml
 from roughmdr.storage.labelled import Labelled
@@ -19,6 +21,7 @@ from roughmdr.storage.result_file import read_result
 from roughmdr.variables import DONE, FAILED, LAW_VARIABLES, PULL_OFF_NUMBERS, RUN_DIAGNOSTICS
 
 _MAX_CHANGES = 5  # most changes that a message lists
+_AT_ONCE = 2**20  # most numbers of a variable that are copied at a time, 8 MB
 _REMEDY = "give another output, or --fresh (resume=False) to replace it"
 
 
@@ -70,8 +73,8 @@ def reuse(
         if lost := _what_would_be_lost(old, plan, reusable):
             raise StoreError(f"{target}: holds {lost}, which this scene does not ask for: {_REMEDY}")
         if "realization" in old.sizes and (not plan.unloads or set(PULL_OFF_NUMBERS) <= set(old.variables)):
-            result = _task_result_of(old)
-            reusable.add(lambda: result)
+            for read in _task_results_of(old):
+                reusable.add(read)
     elif old is not None:  # stored task results that match do not allow to replace a result that does not
         matches = False
         reasons += _what_changed(old.attrs["scene"], old.attrs.get("versions", "other versions"), plan)
@@ -134,11 +137,19 @@ def _what_changed(scene: str, old_versions: str, plan: Plan) -> list[str]:
     return changed or ["a file that it reads holds something else" if reads else "its cells are others"]
 
 
-def _task_result_of(old: Labelled) -> TaskResult:
-    """Return the curves of a result that were computed, as if one task had computed them."""
+def _task_results_of(old: Labelled) -> Iterator[Reader]:
+    """Yield readers of the curves of a result that were computed, of so few that a copy takes little memory."""
     status = old.variables["status"].values
-    shape = -1, status.shape[-1]
-    cell, first = np.nonzero(status.reshape(shape) == DONE)
+    cell, first = np.nonzero(status.reshape(-1, status.shape[-1]) == DONE)
+    together = max(1, _AT_ONCE // old.sizes["step"])
+    for begin in range(0, cell.size, together):
+        rows = slice(begin, begin + together)
+        yield partial(_task_result_of, old, cell[rows], first[rows])
+
+
+def _task_result_of(old: Labelled, cell: Ints, first: Ints) -> TaskResult:
+    """Return some curves of a result as if one task had computed them."""
+    shape = -1, old.sizes["realization"]
     arrays = old.variables | old.coordinates
     names = [name for name in LAW_VARIABLES if name in old.variables]
     curves = [arrays[name].values.reshape(-1, *arrays[name].values.shape[-2:])[cell, first] for name in names]

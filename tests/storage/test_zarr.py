@@ -1,0 +1,243 @@
+"""Zarr stores: the numbers of the netCDF file, read by xarray and every command, whole or not there."""
+
+import json
+import subprocess
+import sys
+import time
+import tracemalloc
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import tomli_w
+import xarray as xr
+from batches import slow_scene
+from click.testing import CliRunner
+from forms import large
+from hypothesis import given, settings, strategies as st
+from scenes import scene
+
+import roughmdr as rm
+from roughmdr.cli import main
+from roughmdr.result.view import ResultView
+from roughmdr.storage import files, room, zarr_store
+from roughmdr.storage.labelled import Labelled
+from roughmdr.storage.result_file import read_result
+
+SWEPT = scene(
+    path={"separation": {"stop": "0.5 sigma", "steps": 20}, "unload": True},
+    adhesion={"model": "jkr", "work": 0.05},
+    sweep={"adhesion.work": [0.02, 0.05], "asperities.placement": ["random", "square"]},
+)
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A result in both formats, and the store as xarray writes it again in the format before."""
+    here = tmp_path_factory.mktemp("stores")
+    for name in ("out.nc", "out.zarr"):
+        rm.run(SWEPT, here / name)
+    with xr.open_zarr(here / "out.zarr") as opened:
+        for variable in opened.variables.values():
+            variable.encoding.clear()
+        old = opened.load().map(lambda each: each.astype(object) if each.dtype.kind == "T" else each)
+        old.assign_coords(
+            {k: v.astype(object) if v.dtype.kind == "T" else v for k, v in opened.coords.items()}
+        ).to_zarr(here / "old.zarr", zarr_format=2)
+    return here
+
+
+@pytest.mark.parametrize("name", ["out.zarr", "old.zarr"])
+def test_it_holds_what_the_netcdf_file_holds(folder: Path, name: str) -> None:
+    stored, expected = (read_result(folder / each) for each in (name, "out.nc"))
+    assert stored.integrity_fault() == ""
+    assert stored.variables.keys() == expected.variables.keys()
+    assert stored.coordinates.keys() == expected.coordinates.keys()
+    for each, array in (expected.variables | expected.coordinates).items():
+        found = (stored.variables | stored.coordinates)[each]
+        assert found.dims == array.dims
+        if each != "run_time":
+            np.testing.assert_array_equal(found.values, array.values)
+        if name == "out.zarr":
+            assert {k: np.array(v).tolist() for k, v in found.attrs.items()} == {
+                k: np.array(v).tolist() for k, v in array.attrs.items()
+            }
+    assert ResultView(stored).curves == ResultView(expected).curves
+
+
+def test_xarray_reads_it_chunk_by_chunk(folder: Path) -> None:
+    with xr.open_zarr(folder / "out.zarr") as stored, xr.open_dataset(folder / "out.nc") as expected:
+        assert stored.force.chunks is not None
+        assert set(stored.coords) == set(expected.coords)
+        for name in expected.data_vars:
+            if name != "run_time":
+                np.testing.assert_array_equal(stored[name], expected[name])
+        np.testing.assert_array_equal(stored.roughmdr.pull_off().force, expected.roughmdr.pull_off().force)
+        cell = {"asperities_placement": "square", "adhesion_work": 0.05}
+        one = [each.sel(cell).roughmdr.at_force(1e-5).separation for each in (stored, expected)]
+        np.testing.assert_array_equal(*one)
+
+
+@pytest.mark.parametrize(
+    "command",
+    [
+        "info {}",
+        large("info {} --cells --json"),
+        large("plan {}"),
+        large("cite {}"),
+        large("plot {} -o picture.svg --fresh"),
+        large("report {} -o page.html --fresh"),
+    ],
+)
+def test_commands_read_it(folder: Path, command: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(folder)
+    done, expected = (CliRunner().invoke(main, command.format(name).split()) for name in ("out.zarr", "out.nc"))
+    assert done.exit_code == expected.exit_code == 0, done.output
+    lines = [each.output.replace("out.zarr", "out.nc").splitlines() for each in (done, expected)]
+    assert len(lines[0]) == len(lines[1])
+
+
+def test_a_run_goes_on_from_it(tmp_path: Path) -> None:
+    table = scene(batch={"realizations": 3})
+    rm.run(table, tmp_path / "out.zarr")
+    more = scene(batch={"realizations": 5})
+    again, once = rm.run(more, tmp_path / "out.zarr"), rm.run(more, tmp_path / "out.nc")
+    np.testing.assert_array_equal(again.force, once.force)
+    np.testing.assert_array_equal(read_result(tmp_path / "out.zarr").variables["force"].values, once.force)
+    with pytest.raises(rm.StoreError, match="holds results of another scene: seed was 7, is 8"):
+        rm.run(scene(seed=8), tmp_path / "out.zarr")
+    assert {path.name for path in tmp_path.iterdir()} == {"out.nc", "out.zarr"}
+
+
+@pytest.mark.parametrize("exchanges", [True, False])
+def test_the_store_of_before_is_replaced_whole(
+    tmp_path: Path, exchanges: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    if not exchanges:
+        monkeypatch.setattr(files, "_exchange", lambda *_: False)
+    rm.run(scene(path={"separation": [1e-6]}), tmp_path / "out.zarr")
+    before = read_result(tmp_path / "out.zarr")
+    other = rm.run(scene(adhesion={"model": "jkr", "work": 0.05}), tmp_path / "out.zarr", resume=False)
+    found = read_result(tmp_path / "out.zarr")
+    assert found.checksum() == Labelled.of(other).checksum() != before.checksum()
+    assert [path.name for path in tmp_path.iterdir()] == ["out.zarr"]
+
+
+def test_if_it_cannot_be_written_the_one_of_before_stays(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    rm.run(scene(), tmp_path / "out.zarr")
+    before = read_result(tmp_path / "out.zarr").checksum()
+
+    def full(*_: Any) -> None:
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(zarr_store, "_write", full)
+    with pytest.raises(rm.RoughmdrError, match=r"out\.zarr: cannot be written: No space left on device"):
+        rm.run(scene(seed=9), tmp_path / "out.zarr", resume=False)
+    assert read_result(tmp_path / "out.zarr").checksum() == before
+
+
+@pytest.mark.parametrize("there", ["file", "folder"])
+def test_what_is_no_store_is_not_replaced(tmp_path: Path, there: str) -> None:
+    out = tmp_path / "out.zarr"
+    if there == "file":
+        out.write_text("mine")
+    else:
+        out.mkdir()
+        (out / "mine").write_text("mine")
+    for resume in (True, False):
+        with pytest.raises(
+            rm.StoreError, match=r"out\.zarr: is no Zarr store; the output must be one, or not be there"
+        ):
+            rm.run(scene(), out, resume=resume)
+    with pytest.raises(rm.StoreError, match=r"out\.zarr: (is a folder|not a netCDF file)"):
+        read_result(out)
+    assert (out if there == "file" else out / "mine").read_text() == "mine"
+
+
+def test_without_the_package_it_is_told_before_anything_is_computed(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setitem(sys.modules, "zarr", None)
+    with pytest.raises(rm.StoreError, match=r"Zarr stores need the package zarr: pip install -e '\.\[zarr\]'"):
+        rm.run(scene(), tmp_path / "out.zarr")
+    assert not list(tmp_path.iterdir())
+
+
+def test_damage_is_told(tmp_path: Path) -> None:
+    rm.run(scene(), tmp_path / "out.zarr")
+    metadata = tmp_path / "out.zarr" / "zarr.json"
+    table = json.loads(metadata.read_text())
+    chunk = next(path for path in (tmp_path / "out.zarr" / "force" / "c").rglob("*") if path.is_file())
+    content = chunk.read_bytes()
+    chunk.write_bytes(content[:-8])
+    with pytest.raises(rm.StoreError, match=r"out\.zarr: not a Zarr store that can be read"):
+        read_result(tmp_path / "out.zarr")
+    chunk.unlink()  # the values of a missing chunk are not known
+    with pytest.raises(rm.StoreError, match="force is not finite, and status says that it was computed"):
+        read_result(tmp_path / "out.zarr")
+    chunk.write_bytes(content)
+    table["attributes"]["checksum"] = "0"
+    metadata.write_text(json.dumps(table))
+    assert read_result(tmp_path / "out.zarr").integrity_fault() == "its numbers are not those that were written"
+    metadata.write_text("{}")
+    with pytest.raises(rm.StoreError, match=r"out\.zarr: not a result as roughmdr writes it: it has no title"):
+        read_result(tmp_path / "out.zarr")
+
+
+@settings(deadline=None)
+@given(st.lists(st.integers(1, 2000), max_size=4))
+def test_chunks_are_small_and_cover_all_once(shape: list[int]) -> None:
+    chunks = zarr_store._chunks(tuple(shape))
+    assert np.prod(chunks, dtype=float) <= zarr_store._CHUNK_SIZE
+    counts = [-(-size // chunk) for size, chunk in zip(shape, chunks, strict=True)]
+    if np.prod(counts, dtype=float) < 1e4:
+        blocks = list(zarr_store._blocks(tuple(shape), chunks))
+        assert len(set(map(str, blocks))) == len(blocks) == np.prod(counts)
+        sizes = [[len(range(size)[each]) for size, each in zip(shape, block, strict=True)] for block in blocks]
+        assert sum(np.prod(each) for each in sizes) == np.prod(shape)
+
+
+@pytest.mark.parametrize("ending", [large("nc"), "zarr"])
+def test_large_curves_take_little_memory(tmp_path: Path, ending: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Computed, extended and read; the numbers are those of a run in memory."""
+    asperities = {**scene()["asperities"], "count": 3}
+    path = {"separation": {"start": "3 um", "stop": "0 um", "steps": 2000}}
+    tables = [scene(asperities=asperities, path=path, batch={"realizations": runs}) for runs in (150, 300)]
+    expected = rm.run(tables[1])
+    size = sum(each.nbytes for each in expected.data_vars.values())
+    monkeypatch.setattr(room, "IN_MEMORY", 2**19)
+    monkeypatch.setattr("roughmdr.batch.tasks.IN_MEMORY", 2**19)
+    for module in ("resume.find", "moments"):
+        monkeypatch.setattr(f"roughmdr.batch.{module}._AT_ONCE", 2**14)
+    out = tmp_path / f"out.{ending}"
+    rm.run(scene(), tmp_path / f"first.{ending}")  # with all that is imported
+    tracemalloc.start()
+    try:
+        for table in tables:
+            rm.run(table, out)
+        found = read_result(out)
+        peak = tracemalloc.get_traced_memory()[1]
+    finally:
+        tracemalloc.stop()
+    assert size > 1.8e7
+    assert peak < 0.75 * size  # in memory there are two copies while it is computed
+    for name in ("force", "contact_area", "stiffness"):
+        np.testing.assert_array_equal(found.variables[name].values, expected[name])
+    assert {each.name for each in tmp_path.iterdir()} == {out.name, f"first.{ending}"}
+
+
+@pytest.mark.large
+def test_killed_at_any_moment_it_comes_to_the_same_bits(tmp_path: Path) -> None:
+    table = slow_scene(runs=48)
+    (tmp_path / "scene.toml").write_text(tomli_w.dumps(table))
+    command = [sys.executable, "-m", "roughmdr", "run", "scene.toml", "-o", "out.zarr", "--quiet"]
+    rng = np.random.default_rng(3)
+    for _ in range(6):
+        running = subprocess.Popen(command, cwd=tmp_path)
+        time.sleep(rng.uniform(1.0, 4.0))
+        running.kill()
+        running.wait()
+    subprocess.run(command, cwd=tmp_path, check=True)
+    np.testing.assert_array_equal(read_result(tmp_path / "out.zarr").variables["force"].values, rm.run(table).force)
+    assert {path.name for path in tmp_path.iterdir()} == {"scene.toml", "out.zarr"}
