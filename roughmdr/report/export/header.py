@@ -6,6 +6,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from roughmdr.report.contacts import conduction_lines, contact_pressure_lines
+from roughmdr.report.export.joint import SEATING, hyperbola
 from roughmdr.report.export.law import Law, Quantity
 from roughmdr.report.export.table import RELATIVE_FROM, Table
 from roughmdr.report.export.units import UnitSystem
@@ -63,6 +64,14 @@ def table_lines(
         )
     if cell.known("numerical_error").size:
         yield "numerical error", f"force within {cell.largest('numerical_error'):.2g} of the largest"
+    if quantity.name == "pressure" and (joint := hyperbola(law.separation, law.pressure)):
+        yield (
+            "Barton-Bandis",
+            f"p = k_ni v/(1 - v/v_m) with k_ni = {joint.stiffness / pressure.size * length.size:.4g} {pressure.name}/"
+            f"{length.name} and v_m = {joint.closure / length.size:.4g} {length.name}, p and v from a pressure of "
+            f"{joint.seating / pressure.size:.4g} {pressure.name} on ({SEATING:.0%} of the largest), is off by up to "
+            f"{joint.misfit:.2g} of the largest",
+        )
     if quantity.whole:
         yield from whole_lines(cell, table.law, law, quantity, units)
     if table.departure > 0.0:
