@@ -37,6 +37,19 @@ def of_ansys(path: Path) -> tuple[str, Floats, Floats]:
     return primary, table[:, 0], table[:, 1]
 
 
+def of_lammps(path: Path) -> Floats:
+    """Distances, energies and forces of the only section of a table for ``pair_style table``."""
+    lines = path.read_text("ascii").splitlines()
+    assert lines[0].startswith("#")
+    keyword, size, blank, *rows = (line for line in lines[lines.index("") + 1 :])
+    assert (keyword, blank) == ("ROUGH_FORCE", "")
+    number, *table = np.array([row.split() for row in rows], dtype=float).T
+    assert size == f"N {number.size}"
+    np.testing.assert_array_equal(number, np.arange(number.size) + 1)
+    assert (np.diff(table[0]) > 0.0).all()
+    return np.array(table)
+
+
 def of_csv(path: Path) -> pd.DataFrame:
     return pd.read_csv(path, comment="#")
 

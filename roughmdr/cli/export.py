@@ -11,14 +11,16 @@ from roughmdr.cli.terminal import Command, print_note, print_text
 
 @click.command(cls=Command)
 @click.argument("result", type=FILE)
-@click.option("-o", "--output", type=OUTPUT, required=True, help="File to write: .inp, .mac, .i, .h, .csv or .json.")
-@click.option("--to", required=True, metavar="FORMAT", help="abaqus, calculix, moose, ansys, c, csv or json.")
+@click.option(
+    "-o", "--output", type=OUTPUT, required=True, help="File to write: .inp, .mac, .i, .h, .table, .csv or .json."
+)
+@click.option("--to", required=True, metavar="FORMAT", help="abaqus, calculix, moose, ansys, lammps, c, csv or json.")
 @click.option(
     "--quantity",
     default="pressure",
     show_default=True,
     metavar="QUANTITY",
-    help="pressure or area over the overclosure, conductance or tangential over the pressure, or nodes.",
+    help="pressure, area or whole force over the overclosure, conductance or tangential over the pressure, or nodes.",
 )
 @click.option("--units", default="", metavar="NAMES", help='Length, force and stress, as "mm,N,MPa". Default: SI.')
 @click.option("--branch", default="loading", show_default=True, metavar="BRANCH", help="loading or unloading.")
@@ -29,6 +31,7 @@ from roughmdr.cli.terminal import Command, print_note, print_text
     show_default=True,
     help="Of lines between the points: over the value, below a tenth of the largest over that tenth.",
 )
+@click.option("--distance", default="", metavar="LENGTH", help="For lammps: of two centres at zero separation.")
 @click.option("--select", "selected", multiple=True, metavar="KEY=VALUE", help="Of a sweep: one cell; repeatable.")
 @fresh_option
 def export(result: Path, output: Path, selected: tuple[str, ...], fresh: bool, **options: str | float) -> None:

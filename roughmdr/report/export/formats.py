@@ -1,4 +1,4 @@
-"""The formats of exported files, each declared once: finite-element codes and C have two columns, CSV and JSON all.
+"""The formats of exported files, each declared once: codes and C have two or three columns, CSV and JSON all.
 
 Options of Abaqus and CalculiX are to be included under *SURFACE INTERACTION. Real constants of contact elements of
 Ansys take the name of an array of type TABLE as %NAME%; its primary variable GAP is positive in penetration, PRESSURE
@@ -18,7 +18,7 @@ class Template(NamedTuple):
     the elastic slip there.
     """
     row: str = ""
-    """For each point: {x}, the argument; {y}, the value; {number}, from 1; {all} numbers."""
+    """For each point: {x}, the argument; {y}, the value; {number}, from 1; {all} numbers, also as {point[0]} and on."""
     foot: str = ""
     """Once, behind the points; fields as in ``head``."""
 
@@ -40,12 +40,16 @@ class Format(NamedTuple):
     """Lines that the code reads, of quantities where they are limited."""
     least_step: float = 0.0
     """Step of the overclosure, in units of the model, below which the code changes it."""
+    of_distance: bool = False
+    """Whether its argument is the distance of two centres, at even steps of its square."""
+    tags: Mapping[tuple[float, float], str] = {}
+    """Ends of the first line by which the code knows its units, by the sizes of length and force in SI."""
 
 
 _INCLUDED = "for *INCLUDE under a *SURFACE INTERACTION"
 _AS_CALLED = "a function of what it is called with, by default the time; constant beyond its ends"
 _BY_NAME = "a table that real constants of contact elements take as %NAME%"
-_ALL = dict.fromkeys(("pressure", "conductance", "area", "tangential", "nodes"), "")
+_ALL = dict.fromkeys(("pressure", "force", "conductance", "area", "tangential", "nodes"), "")
 _PAIR = "{y:.12e}, {x:.12e}"  # numbers in the 20 characters that CalculiX reads
 _FUNCTION = """\
 [Functions]
@@ -172,8 +176,21 @@ FORMATS = {
             "c",
             (".h",),
             "//",
-            dict.fromkeys(("pressure", "conductance", "area", "tangential"), _IN_C),
+            dict.fromkeys(("pressure", "force", "conductance", "area", "tangential"), _IN_C),
             {"": Template(_HEADER, "        {{{x!r}, {y!r}}},", _SEARCH)},
+        ),
+        Format(
+            "lammps",
+            (".table",),
+            "#",
+            {
+                "force": "pair_style table linear N, with the number N of the points, and pair_coeff 1 1 FILE "
+                "ROUGH_FORCE; or fix wall/table linear N zlo 0.0 FILE ROUGH_FORCE CUTOFF; no force beyond the last "
+                "point; pairs closer than the first are an error"
+            },
+            {"": Template("\nROUGH_FORCE\nN {count}\n", "{number} {x!r} {point[2]!r} {y!r}")},
+            of_distance=True,
+            tags={(1.0, 1.0): "; UNITS: si", (1e-6, 1e-9): "; UNITS: micro", (1e-9, 1e-12): "; UNITS: nano"},
         ),
         Format("csv", (".csv",), "#", _ALL, {"": Template("{columns}", "{all}")}),
         Format("json", (".json",), "", _ALL, {}),

@@ -6,9 +6,11 @@ from collections.abc import Iterator
 import numpy as np
 
 from roughmdr.report.contacts import conduction_lines, contact_pressure_lines
-from roughmdr.report.export.law import Quantity, Source
+from roughmdr.report.export.joint import SEATING, hyperbola
+from roughmdr.report.export.law import Law, Quantity
 from roughmdr.report.export.table import RELATIVE_FROM, Table
 from roughmdr.report.export.units import UnitSystem
+from roughmdr.report.export.whole import whole_lines
 from roughmdr.result.between import CONFIDENCE
 from roughmdr.result.model_errors import error_of_mean
 from roughmdr.result.trust import trust_of_result
@@ -28,23 +30,24 @@ def origin_lines(cell: ResultView, words: str) -> Iterator[tuple[str, str]]:
 
 
 def table_lines(
-    cell: ResultView, table: Table, quantity: Quantity, source: Source, units: UnitSystem
+    cell: ResultView, table: Table, quantity: Quantity, law: Law, units: UnitSystem
 ) -> Iterator[tuple[str, str]]:
     """Yield what the numbers of a table are, and their errors."""
     runs = cell.realizations
     yield "law", "expected law" if cell.estimator == "expected" else f"mean of {runs} realisation{'s' * (runs > 1)}"
     yield "branch", table.law.rule
-    variable, unit = source.variable, units.of(source.dimension).name
-    per_area = "" if variable in ("pressure", "contact_fraction") else " per nominal area"
+    variable, unit = law.source.variable, units.of(law.source.dimension).name
+    per_area = "" if quantity.whole or variable in ("pressure", "contact_fraction") else " per nominal area"
     yield "quantity", f"{variable}{per_area}{f' in {unit}' if unit != '1' else ''}"
     length, pressure = units.length, units.stress
     yield "units", units.names
     if "nominal_area" in cell.variables:
         yield "nominal area", f"{cell.variables['nominal_area'].values.item() / length.size**2:.15g} {length.name}^2"
-    datum = table.law.datum / length.size
+    datum, pressed = table.law.datum / length.size, "flat" if cell.flat else "undeformed body"
     yield (
         "datum",
-        f"overclosure is {datum:.15g} {length.name} minus the separation of the flat from the datum plane of heights",
+        f"overclosure is {datum:.15g} {length.name} minus the separation of the {pressed} "
+        "from the datum plane of heights",
     )
     yield "points", f"{table.law.overclosure.size}, of {table.steps} steps"
     over = "the pressure" if quantity.over_pressure else "the overclosure"
@@ -61,6 +64,16 @@ def table_lines(
         )
     if cell.known("numerical_error").size:
         yield "numerical error", f"force within {cell.largest('numerical_error'):.2g} of the largest"
+    if quantity.name == "pressure" and (joint := hyperbola(law.separation, law.pressure)):
+        yield (
+            "Barton-Bandis",
+            f"p = k_ni v/(1 - v/v_m) with k_ni = {joint.stiffness / pressure.size * length.size:.4g} {pressure.name}/"
+            f"{length.name} and v_m = {joint.closure / length.size:.4g} {length.name}, p and v from a pressure of "
+            f"{joint.seating / pressure.size:.4g} {pressure.name} on ({SEATING:.0%} of the largest), is off by up to "
+            f"{joint.misfit:.2g} of the largest",
+        )
+    if quantity.whole:
+        yield from whole_lines(cell, table.law, law, quantity, units)
     if table.departure > 0.0:
         departure = f"{table.departure / pressure.size:.3g} {pressure.name}"
         yield "departure", f"up to {departure} at steps that a load jumps over"

@@ -28,6 +28,8 @@ class Quantity(NamedTuple):
     sources: tuple[Source, ...]
     over_pressure: bool
     """Whether tables have it over the pressure, else over the overclosure."""
+    whole: bool = False
+    """Whether it is the whole law of a body at given separations, else the part per area that a load can follow."""
 
 
 _PRESSURE = Quantity("pressure", (Source("pressure", "Pa", False), Source("force", "Pa", True)), over_pressure=False)
@@ -44,6 +46,7 @@ QUANTITIES = {
             "area", (Source("contact_fraction", "1", False), Source("contact_area", "1", True)), over_pressure=False
         ),
         Quantity("tangential", (Source("tangential_stiffness", "Pa/m", True),), over_pressure=True),
+        Quantity("force", (Source("force", "N", False),), over_pressure=False, whole=True),
     )
 }
 """Quantities of tables by their names."""
@@ -56,7 +59,7 @@ class Law(NamedTuple):
     separation: Floats
     """[m]: [step], falling."""
     pressure: Floats
-    """[Pa]: [step]."""
+    """[Pa], of a whole law the force [N]: [step]."""
     value: Floats
     """In the dimension of its source, in SI: [step]."""
     standard_error: Floats
@@ -83,8 +86,8 @@ def law_of(cell: ResultView, quantity: Quantity, branch: str) -> Law:
         )
     separation = cell.coordinates[SEPARATION.name].values.reshape(-1)
     steps = _steps(cell.legs, separation, branch)
-    pressure, _, _ = _mean(cell, _PRESSURE, steps)
     value, error, source = _mean(cell, quantity, steps)
+    pressure = value if quantity.whole else _mean(cell, _PRESSURE, steps)[0]
     runs = 0 if cell.estimator == "expected" else cell.realizations
     return Law(source, separation[steps], pressure, value, error, runs, cell.attrs["scene"])
 
@@ -112,7 +115,9 @@ def _mean(cell: ResultView, quantity: Quantity, steps: Ints) -> tuple[Floats, Fl
     if source.per_area:
         if "nominal_area" not in cell.variables:
             under = "".join(f" under [{stage.key}]" for stage in stages_in(cell.scene) if not stage.flat)
-            raise StoreError(f"quantity {quantity.name!r} is per nominal area, and the result has none{under}")
+            raise StoreError(
+                f"quantity {quantity.name!r} is per nominal area, and the result has none{under}: 'force' is not"
+            )
         area = float(cell.variables["nominal_area"].values.item())
         if not 0.0 < area < np.inf:
             raise StoreError(f"nominal_area is {area:g} m2; per area there is nothing")

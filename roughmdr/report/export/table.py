@@ -9,11 +9,13 @@ from roughmdr.errors import StoreError
 from roughmdr.numerics.arguments import Floats
 from roughmdr.report.export.law import Law, Quantity
 from roughmdr.report.export.stable import StablePart, stable_part
+from roughmdr.report.export.whole import even_points, whole_part
 from roughmdr.result.between import ANYWHERE, REACH, off_line
 from roughmdr.schema.units import format_quantity
 
 MOST_ERROR = 0.1
 """Largest error that a table may have, over the value."""
+_AT_KNOTS = ("overclosure", "pressure", "value", "standard_error")
 _FEWEST = 4
 """Steps that tell how far a law is off the lines between them."""
 RELATIVE_FROM = 0.1
@@ -40,13 +42,19 @@ class Table(NamedTuple):
 
 
 @np.errstate(all="ignore")  # numbers that no float can hold are refused
-def table_of(law: Law, quantity: Quantity, branch: str, *, error: float, with_tension: bool) -> Table:
+def table_of(
+    law: Law, quantity: Quantity, branch: str, *, error: float, with_tension: bool, distance: float | None = None
+) -> Table:
     """Return the table of a law with the fewest knots that keep within ``error``, as ``tolerances`` says.
 
+    With the ``distance`` [m] of two centres at zero overclosure the knots are at even steps of the squared distance.
     StoreError where the steps of the path are too far apart for that error, and errors of ``stable_part``.
     """
-    negligible = error * RELATIVE_FROM * float(law.pressure.max())
-    part = stable_part(law, branch, with_tension=with_tension, negligible=negligible)
+    negligible = error * RELATIVE_FROM * float(np.abs(law.pressure).max())
+    if quantity.whole:
+        part = whole_part(law, branch, negligible)
+    else:
+        part = stable_part(law, branch, with_tension=with_tension, negligible=negligible)
     x, y = (part.pressure, part.value) if quantity.over_pressure else (part.overclosure, part.value)
     largest = float(np.abs(y).max())
     if not largest > 0.0 or x.size < 2:
@@ -71,16 +79,15 @@ def table_of(law: Law, quantity: Quantity, branch: str, *, error: float, with_te
             f"error is {error:g}, and between the steps of the path the {quantity.name} is known to {reached:.2g} "
             f"only: {ask}{remedy(law, quantity, float((bent / allowed).max()), float((jumps / allowed).max()))}"
         )
-    kept = knots(x, y, allowed - between)
-    off = np.abs(np.interp(x, x[kept], y[kept]) - y) + between
+    if distance is None:
+        kept = knots(x, y, allowed - between)
+        at, read = x[kept], np.interp(x, x[kept], y[kept])
+    else:
+        at, read = even_points(x, y, allowed - between, distance)
+    off = np.abs(read - y) + between
     upper = np.abs(y) >= RELATIVE_FROM * largest
     return Table(
-        part._replace(
-            overclosure=part.overclosure[kept],
-            pressure=part.pressure[kept],
-            value=part.value[kept],
-            standard_error=part.standard_error[kept],
-        ),
+        part._replace(**{name: np.interp(at, x, getattr(part, name)) for name in _AT_KNOTS}),
         x.size,
         float(off.max()) / largest,
         float((off[upper] / np.abs(y[upper])).max()),

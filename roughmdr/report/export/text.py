@@ -36,6 +36,8 @@ class Document(NamedTuple):
     """The first two are what a code reads: the argument, then the value."""
     friction: float | None = None
     """Coefficient of friction of the scene; None where there is none."""
+    tag: str = ""
+    """End of the first line, which the code reads."""
 
 
 def text_of(document: Document, form: Format) -> str:
@@ -66,7 +68,7 @@ def text_of(document: Document, form: Format) -> str:
     if template.row:
         points = zip(*(column.values.tolist() for column in document.columns), strict=True)
         lines += (
-            template.row.format(x=point[0], y=point[1], number=number, all=",".join(map(repr, point)))
+            template.row.format(x=point[0], y=point[1], point=point, number=number, all=",".join(map(repr, point)))
             for number, point in enumerate(points, start=1)
         )
     return "\n".join([*lines, *[template.foot.format(**fields)] * bool(template.foot), ""])
@@ -74,7 +76,7 @@ def text_of(document: Document, form: Format) -> str:
 
 def _comments(document: Document, form: Format) -> Iterator[str]:
     """Yield the header as lines of comments in ASCII, first the mark by which an export is known again."""
-    yield f"{form.comment} {document.quantity} for {form.name}, {EXPORT_MARK}"
+    yield f"{form.comment} {document.quantity} for {form.name}, {EXPORT_MARK}{document.tag}"
     for name, text in document.header.items():
         spelled = escape_controls(text).replace("\n", "; ").replace("±", "+/-").replace("µ", "u")
         plain = spelled.encode("ascii", "backslashreplace").decode()

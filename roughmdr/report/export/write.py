@@ -8,14 +8,15 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from roughmdr.errors import LimitWarning, StoreError, level_outside
+from roughmdr.errors import LimitWarning, RoughmdrError, StoreError, level_outside
 from roughmdr.model_error.parts import PLASTIC
 from roughmdr.report.export.formats import FORMATS, Format
 from roughmdr.report.export.header import origin_lines, table_lines
-from roughmdr.report.export.law import QUANTITIES, Quantity, law_of
+from roughmdr.report.export.law import QUANTITIES, Law, Quantity, law_of
 from roughmdr.report.export.table import MOST_ERROR, Table, table_of
 from roughmdr.report.export.text import Column, Document, text_of
 from roughmdr.report.export.units import UnitSystem
+from roughmdr.report.export.whole import columns_of
 from roughmdr.result.given import given_result
 from roughmdr.result.select import cell_of, select
 from roughmdr.result.view import ResultView
@@ -45,6 +46,7 @@ class Export:
     units: str = ""
     branch: str = "loading"
     error: float = 1e-3
+    distance: str | float = ""
     select: Mapping[str, object] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
@@ -55,7 +57,19 @@ class Export:
             raise StoreError(f"error is {self.error!r}; it must be from {_LEAST_ERROR:g} to {MOST_ERROR:g}")
         if self.quantity not in self.format.quantities:
             able = [name for name, each in FORMATS.items() if self.quantity in each.quantities]
-            raise StoreError(f"{self.to} has no table of quantity {self.quantity!r}; {', '.join(able)} have")
+            said = f"{self.to} has no table of quantity {self.quantity!r}; {', '.join(able)} have"
+            raise StoreError(f"{said}; {self.to} has {', '.join(self.format.quantities)}")
+
+    @property
+    def centres(self) -> float | None:
+        """The distance [m] of two centres at zero overclosure, of formats over the distance; None of others."""
+        if (self.distance == "") == self.format.of_distance:
+            needed = "lammps needs that of two centres, or of one from a wall, at zero separation; others have none"
+            raise StoreError(f"distance is {short_repr(self.distance)}; {needed}")
+        try:
+            return number_in_si(self.distance, "m") if self.format.of_distance else None
+        except RoughmdrError as error:
+            raise StoreError(f"distance is {short_repr(self.distance)}: {error}") from None
 
     @property
     def format(self) -> Format:
@@ -74,18 +88,19 @@ def export(result: "str | Path | xr.Dataset", out: str | Path, *, to: str, fresh
     result : path or xarray.Dataset
         A result file, or what ``run`` returned, over the separation.
     out : path
-        The file to write: .inp for Abaqus, CalculiX and Ansys, .i for MOOSE, .h, .csv, .json. One that was exported
-        before is replaced.
-    to : {"abaqus", "calculix", "moose", "ansys", "c", "csv", "json"}
+        The file to write: .inp for Abaqus, CalculiX and Ansys, .i for MOOSE, .table for LAMMPS, .h, .csv, .json. One
+        that was exported before is replaced.
+    to : {"abaqus", "calculix", "moose", "ansys", "c", "lammps", "csv", "json"}
         The code, or the format.
     fresh : bool, optional
         Whether to replace a file of any kind at ``out``.
     **options
         ``quantity``: "pressure" (default) or "area" over the overclosure, "conductance" or "tangential" stiffness over
-        the pressure, each per nominal area; or "nodes", a few asperities whose sum is the expected law. ``units``:
-        names of length, force and stress such as "mm,N,MPa"; SI unless given. ``branch``: "loading" (default) or
-        "unloading". ``error``: that of lines between the points of the table, over the largest value and over the
-        value itself where that is within a decade of it (1e-3). ``select``: a dictionary such as
+        the pressure, each per nominal area; "force", the whole law of a body; or "nodes", a few asperities whose sum
+        is the expected law. ``units``: names of length, force and stress such as "mm,N,MPa"; SI unless given.
+        ``branch``: "loading" (default) or "unloading". ``error``: that of lines between the points of the table, over
+        the largest value and over the value itself where that is within a decade of it (1e-3). ``distance`` [m]: for
+        lammps, that of two centres, or of one from a wall, at zero separation. ``select``: a dictionary such as
         ``{"adhesion.work": "50 mJ/m^2"}`` of the cell of a sweep.
 
     Raises
@@ -142,9 +157,24 @@ def document_of(result: ResultView, file: Path | None, asked: Export) -> tuple[D
     cell, words = select(result, asked.select)
     quantity = QUANTITIES[asked.quantity]
     law = law_of(cell, quantity, asked.branch)
-    table = table_of(law, quantity, asked.branch, error=asked.error, with_tension=asked.format.with_tension)
-    unit, length, stress = units.of(law.source.dimension), units.length, units.stress
-    part = table.law
+    form, centres = asked.format, asked.centres
+    table = table_of(law, quantity, asked.branch, error=asked.error, with_tension=form.with_tension, distance=centres)
+    columns = columns_of(table.law, units, centres) if quantity.whole else _columns(table, law, quantity, units)
+    _check_fit(table, quantity, units, asked)
+    header = dict(origin_lines(cell, words)) | dict(table_lines(cell, table, quantity, law, units))
+    if note := form.quantities[asked.quantity]:
+        header["use"] = note.format(value=columns[1].name, VALUE=columns[1].name.upper())
+    if centres is not None:
+        header["distance"] = f"{centres / units.length.size:.15g} {units.length.name} minus the overclosure"
+    memory = {"memory": _MEMORY[asked.branch]} if cell.known(PLASTIC).size else {}
+    friction = _friction(result, asked) if quantity.name == "tangential" else None
+    tag = form.tags.get((units.length.size, units.force.size), "")
+    return Document(quantity.name, header | memory, columns, friction, tag), (*table.warnings, *memory.values())
+
+
+def _columns(table: Table, law: Law, quantity: Quantity, units: UnitSystem) -> tuple[Column, ...]:
+    """Return the columns of a table per area: the argument, the value, and the others."""
+    unit, length, stress, part = units.of(law.source.dimension), units.length, units.stress, table.law
     overclosure = Column("overclosure", length.name, part.overclosure / length.size)
     separation = Column("separation", length.name, (part.datum - part.overclosure) / length.size)
     pressure = Column("pressure", stress.name, part.pressure / stress.size)
@@ -152,14 +182,7 @@ def document_of(result: ResultView, file: Path | None, asked: Export) -> tuple[D
     value = pressure if quantity.name == "pressure" else value
     error = Column("standard_error", unit.name, part.standard_error / unit.size)
     argument, other = (pressure, overclosure) if quantity.over_pressure else (overclosure, pressure)
-    columns = (argument, value, separation, *([] if value is pressure else [other]), error)
-    _check_fit(table, quantity, units, asked)
-    header = dict(origin_lines(cell, words)) | dict(table_lines(cell, table, quantity, law.source, units))
-    if note := asked.format.quantities[asked.quantity]:
-        header["use"] = note.format(value=value.name, VALUE=value.name.upper())
-    memory = {"memory": _MEMORY[asked.branch]} if cell.known(PLASTIC).size else {}
-    friction = _friction(result, asked) if quantity.name == "tangential" else None
-    return Document(quantity.name, header | memory, columns, friction), (*table.warnings, *memory.values())
+    return (argument, value, separation, *([] if value is pressure else [other]), error)
 
 
 def _friction(result: ResultView, asked: Export) -> float | None:
