@@ -26,6 +26,7 @@ def test_the_notebook_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> N
     assert all("<table" in each._repr_html_() for each in (scene, law, fit))
     assert all("<svg" in each._repr_html_() for each in (law, fit))
     assert "force_mean" in at
+    assert figure._repr_png_().startswith(b"\x89PNG")
     assert [axes.get_xgridlines()[0].get_visible() for axes in figure.axes] == [True, True]
     assert float(names["fit"].material_modulus) == pytest.approx(3e6, rel=0.1)
 

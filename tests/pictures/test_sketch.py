@@ -98,3 +98,8 @@ def test_nothing_else_is_loaded_for_it() -> None:
     before = "matplotlib.figure" in sys.modules
     sketch(small())
     assert ("matplotlib.figure" in sys.modules) == before
+
+
+def test_a_figure_shows_itself() -> None:
+    figure = rm.plot(small(), variables="force")
+    assert figure._repr_png_().startswith(b"\x89PNG")
