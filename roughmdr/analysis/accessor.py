@@ -34,7 +34,6 @@ class Analysis:
     >>> print(result.roughmdr)
     result       Four patches
     runs         4 realisations, 100 steps
-    path         separation 6.529 to 1.5 um, loading and unloading
     ...
     """
 

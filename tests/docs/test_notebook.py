@@ -12,7 +12,7 @@ NOTEBOOK = Path(__file__).parent.parent.parent / "docs" / "examples" / "first_st
 
 @pytest.mark.large
 def test_the_notebook_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """As a notebook runs it: a cell's last expression is its output."""
+    """Run cells as a notebook does, which shows the last expression of each."""
     monkeypatch.chdir(tmp_path)
     names: dict[str, Any] = {}
     shown = []
