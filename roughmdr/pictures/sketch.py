@@ -2,7 +2,7 @@
 
 import html
 from collections.abc import Iterator, Sequence
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,15 +20,7 @@ _LEFT, _RIGHT, _TOP, _BOTTOM = 55.0, 328.0, 22.0, 154.0  # ends of the axes in a
 _CELLS = 5  # most cells of a sweep that are drawn: more lines are hard to tell apart
 _POINTS = 600  # most points of all lines together: some 10 kB
 _NUMBERS = 10_000_000  # most numbers that are read: 80 MB, which take a tenth of a second
-_FAINTEST = 0.3  # opacity of the last of several cells
-
-
-class _Line(NamedTuple):
-    x: Floats
-    y: Floats
-    branch: NDArray[np.str_]
-    opacity: float = 1.0
-    points: bool = False  # whether points are drawn in place of a line
+_FAINTEST = 0.3  # opacity of the last of several lines
 
 
 def sketch(dataset: "xr.Dataset") -> str:
@@ -40,12 +32,12 @@ def sketch(dataset: "xr.Dataset") -> str:
         return _sketch_law(ResultView(dataset))
     load = "pressure" if "pressure_fitted" in dataset else "force"
     control = "remote" if "remote" in dataset.coords else "separation"
-    needed = [control, "branch", load, f"{load}_fitted"]
+    needed = [control, "branch", f"{load}_fitted", load]
     if dataset.attrs.get("kind") != FIT or not {*needed} <= {*dataset.variables} or dataset[load].ndim != 1:
         return ""
-    x, branch, measured, fitted = (dataset[name].to_numpy() for name in needed)
-    lines = [_Line(x, measured, branch, 0.6, points=True), _Line(x, fitted, branch)]
-    return _svg(lines, Scale.of(x, control, "m"), Scale.of(measured, load, dataset[load].attrs.get("units", "1")))
+    x, branch, fitted, measured = (dataset[name].to_numpy() for name in needed)
+    scales = Scale.of(x, control, "m"), Scale.of(measured, load, dataset[load].attrs.get("units", "1"))
+    return _svg(np.array([[x, fitted], [x, measured]]), branch, scales, ", measured as dots", dots=True)
 
 
 def _sketch_law(result: ResultView) -> str:
@@ -55,10 +47,8 @@ def _sketch_law(result: ResultView) -> str:
     drawn = min(len(cells), _CELLS, _NUMBERS // max(of_cell, 1))
     chosen = np.unique(np.linspace(0, len(cells) - 1, drawn).astype(int))
     (xs, x), (ys, y) = (_means(result, each, [cells[number] for number in chosen]) for each in (result.abscissa, name))
-    fading = np.linspace(1.0, _FAINTEST, chosen.size).tolist()
-    lines = [_Line(one, other, result.branches, fade) for one, other, fade in zip(xs, ys, fading, strict=True)]
     note = f", {chosen.size} of {len(cells)} cells, the first darkest" if len(cells) > 1 else ""
-    return _svg(lines, x, y, note)
+    return _svg(np.array([xs, ys]).swapaxes(0, 1), result.branches, (x, y), note, dots=False)
 
 
 def _means(result: ResultView, name: str, cells: Sequence[tuple[int, ...]]) -> tuple[list[Floats], Scale]:
@@ -74,19 +64,21 @@ def _means(result: ResultView, name: str, cells: Sequence[tuple[int, ...]]) -> t
     return means, Scale.of(np.array(means), name, array.attrs.get("units", "1"))
 
 
-def _svg(lines: Sequence[_Line], x: Scale, y: Scale, note: str = "") -> str:
-    """Draw lines between the ends of two axes, with a note beside the name of y; empty where no number is finite."""
-    values = np.array([[x(line.x), y(line.y)] for line in lines])
-    if not lines or not np.isfinite(values).any(axis=-1).any(axis=0).all():
+def _svg(values: Floats, branch: NDArray[np.str_], scales: tuple[Scale, Scale], note: str, *, dots: bool) -> str:
+    """Draw lines [line, axis, step] in SI, each fainter, the last perhaps as dots; empty where no number is finite."""
+    x, y = scales
+    values = np.stack([x(values[:, 0]), y(values[:, 1])], axis=1)
+    if not np.isfinite(values).any(axis=-1).any(axis=0).all():
         return ""
     ends = low, high = np.nanmin(values, axis=(0, 2)), np.nanmax(values, axis=(0, 2))
     span, size = np.where(high > low, high - low, 1.0), np.array([_RIGHT - _LEFT, _TOP - _BOTTOM])
     places = np.array([_LEFT, _BOTTOM])[:, None] + ((values - low[:, None]) * (size / span)[:, None])
     zero = _BOTTOM + size[1] * min(max(-low[1] / span[1], 0.0), 1.0)
-    some = np.unique(np.linspace(0, values.shape[-1] - 1, _POINTS // len(lines)).astype(int))
+    some = np.unique(np.linspace(0, values.shape[-1] - 1, _POINTS // len(values)).astype(int))
     drawn = [f'<path d="M{_LEFT} {zero:.1f}H{_RIGHT}M{_LEFT} {_TOP}V{_BOTTOM}" stroke-width="0.5"/>']
-    for line, of_line in zip(lines, places, strict=True):
-        drawn += _drawn(line, of_line[:, some].T, line.branch[some])
+    for number, (of_line, opacity) in enumerate(zip(places, np.linspace(1.0, _FAINTEST, len(values)), strict=True)):
+        paths = _drawn(of_line[:, some].T, branch[some], dots=dots and number == len(values) - 1)
+        drawn += [f'<path d="{path}" opacity="{opacity:.2f}" {style}/>' for path, style in paths]
     (left, bottom), (right, top) = ((f"{each:.3g}" for each in end) for end in ends)
     texts = [
         (_LEFT, _TOP - 8.0, "start", y.label + note),
@@ -104,16 +96,16 @@ def _svg(lines: Sequence[_Line], x: Scale, y: Scale, note: str = "") -> str:
     )
 
 
-def _drawn(line: _Line, places: Floats, branch: NDArray[np.str_]) -> Iterator[str]:
-    """Yield the paths of a line: those of each branch, from where the one before ended, or dots."""
+def _drawn(places: Floats, branch: NDArray[np.str_], *, dots: bool) -> Iterator[tuple[str, str]]:
+    """Yield the paths of a line and their styles: of each branch, from where the one before ended, or all dots."""
     known = np.isfinite(places).all(axis=-1)
     at = np.array([f"{left:.1f} {top:.1f}" for left, top in places])
-    if line.points:
-        yield f'<path d="{"".join(f"M{each}h0" for each in at[known])}" opacity="{line.opacity:.2f}" stroke-width="4"/>'
+    if dots:
+        yield "".join(f"M{each}h0" for each in at[known]), 'stroke-width="4"'
         return
     for each, dashes in (("loading", ""), ("unloading", ' stroke-dasharray="4 3"')):
         here = branch == each
         shown = np.flatnonzero(known & (here | np.append(here[1:], False)))
         for part in np.split(shown, np.flatnonzero(np.diff(shown) > 1) + 1):
             if part.size:  # without h0 a single step would not be seen
-                yield f'<path d="M{"L".join(at[part])}h0" opacity="{line.opacity:.2f}" stroke-width="1.5"{dashes}/>'
+                yield f"M{'L'.join(at[part])}h0", f'stroke-width="1.5"{dashes}'

@@ -93,7 +93,7 @@ def test_a_fit_and_what_has_no_picture() -> None:
     )
     law = rm.run(table)
     fit = rm.fit(law.force.to_dataframe()[["separation", "force"]], table, ["material.modulus"])
-    assert drawn(fit)[1].get("d", "").count("h0") == 4
+    assert drawn(fit)[2].get("d", "").count("h0") == 4
     assert (
         sketch(fit.drop_vars("force_fitted")) == sketch(rm.generate(ASPERITIES, seed=1)) == sketch(xr.Dataset()) == ""
     )
