@@ -27,6 +27,7 @@ def release(version: str, root: Path, today: datetime.date) -> None:
         sys.exit(f"CHANGELOG.md has no section '## {version} (not yet released)'")
     _replace(log, rf"## {re.escape(version)} \(not yet released\)", f"## {version} ({today})")
     _replace(root / "pyproject.toml", r'(?m)^version = ".*"$', f'version = "{version}"')
+    _replace(root / ".ci" / "conda" / "recipe.yaml", r'(?m)^  version: ".*"$', f'  version: "{version}"')
     _replace(root / "CITATION.cff", r"(?m)^version: .*$", f"version: {version}")
     _replace(root / "CITATION.cff", r"(?m)^date-released: .*$", f"date-released: {today}")
     _git(root, "commit", "--all", "--message", f"Release {version}")

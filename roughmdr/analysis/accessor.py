@@ -34,7 +34,6 @@ class Analysis:
     >>> print(result.roughmdr)
     result       Four patches
     runs         4 realisations, 100 steps
-    path         separation 6.529 to 1.5 um, loading and unloading
     ...
     """
 
@@ -48,8 +47,9 @@ class Analysis:
 
     def _repr_html_(self) -> str:
         from roughmdr.analysis.description import describe
+        from roughmdr.pictures.sketch import sketch
 
-        return html_listing(describe(self._dataset))
+        return html_listing(describe(self._dataset)) + sketch(self._dataset)
 
     def pull_off(self) -> "xr.Dataset":
         """Return the pull-off over the swept keys: the largest tension of each unloading, averaged.

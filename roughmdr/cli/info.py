@@ -13,12 +13,13 @@ from roughmdr.cli.terminal import Command, print_document, print_text
 from roughmdr.errors import StoreError
 
 _PAUSE = 1.0  # time [s] between two looks at a batch
+_MORE = 1.1  # factor by which runs are more before the law so far is told again
 
 
 @click.command(cls=Command)
 @click.argument("result", type=FILE)
 @click.option("--cells", is_flag=True, help="List the cells of the sweep: status, time, errors, remarks.")
-@click.option("--follow", is_flag=True, help="Tell how far a batch is, until it ends.")
+@click.option("--follow", is_flag=True, help="Tell how far a batch is, and its law so far, until it ends.")
 @json_option
 @click.pass_context
 def info(ctx: click.Context, result: Path, cells: bool, follow: bool, as_json: bool) -> None:
@@ -67,26 +68,32 @@ def info(ctx: click.Context, result: Path, cells: bool, follow: bool, as_json: b
 def _follow(result: Path) -> Path:
     """Print how far a batch is until no run is at work; return its result, or the folder of its parts without one."""
     from roughmdr.batch.resume.kept import progress_of, read_kept
+    from roughmdr.batch.resume.so_far import SoFar
     from roughmdr.batch.resume.store import MANIFEST, store_folder
-    from roughmdr.report.parts import describe_progress
+    from roughmdr.report.parts import describe_progress, law_lines
+    from roughmdr.schema.wording import format_table
     from roughmdr.storage.files import destination
 
     folder = result if result.name.endswith(".parts") else store_folder(destination(result))
     output = folder.with_name(folder.name.removesuffix(".parts"))
-    progress, first, started, last = None, 0, 0.0, ""
+    so_far, first, started, last, told = None, 0, 0.0, "", 0
     while _is_folder(folder):
         try:
             kept = read_kept(folder)
         except StoreError:  # it has just ended
             break
-        if progress is None and (kept.scene or kept.holder is None):
-            progress, first, started = progress_of(kept), kept.runs, time.monotonic()
-        if progress is not None:
+        if so_far is None and (kept.scene or kept.holder is None):
+            so_far, first, started = SoFar(progress_of(kept)), kept.runs, time.monotonic()
+        if so_far is not None:
             done = kept.runs - first
-            line = describe_progress(kept, progress, (time.monotonic() - started) / done if done else math.inf)
+            line = describe_progress(kept, so_far.progress, (time.monotonic() - started) / done if done else math.inf)
             if line != last:
                 print_text(line)
                 last = line
+            law = None if kept.holder is None else so_far.law(kept)  # else it is told at the end
+            if law is not None and law.moments.size > _MORE * told:
+                print_text(format_table(law_lines(so_far.progress, law)))
+                told = law.moments.size
         if kept.holder is None:
             with suppress(OSError):  # the result was written, though runs failed
                 if output.stat().st_mtime >= (folder / MANIFEST).stat().st_mtime:

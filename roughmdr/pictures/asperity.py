@@ -87,7 +87,7 @@ def _shape_of(ensemble: Ensemble, number: int) -> Shape:
 
 def draw_contact(contact: OneContact, force: float, title: str, notes: list[str]) -> "Figure":
     """Draw a contact that bears a force [N], with a title and notes, to which its numbers are added."""
-    from matplotlib.figure import Figure
+    from roughmdr.pictures.figure import Figure
 
     figure = Figure(figsize=_SIZE, layout="constrained")
     profile, row, load = figure.subplots(3, 1, sharex=True)

@@ -61,7 +61,7 @@ def draw_convergence(result: ResultView) -> "Figure":
     of the model and the error asked for. More than a few cells are a band with their median. StoreError where the
     result holds no realisations, or too few.
     """
-    from matplotlib.figure import Figure
+    from roughmdr.pictures.figure import Figure
 
     if "realization" not in result.sizes:
         raise StoreError(

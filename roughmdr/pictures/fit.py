@@ -18,7 +18,7 @@ _CONTROLS = {"separation": "measured separation", "remote": "measured position o
 
 def draw_fits(fits: Labelled) -> "Figure":
     """Draw how each parameter, and the size of the residuals, are distributed over many curves."""
-    from matplotlib.figure import Figure
+    from roughmdr.pictures.figure import Figure
 
     keys = {key: key.replace(".", "_") for key in parameter_keys(fits)} | {"residual over largest load": "residual_rms"}
     drawn = {key: array for key, name in keys.items() if (array := fits.variables[name]).dims}
@@ -37,7 +37,7 @@ def draw_fit(fit: Labelled) -> "Figure":
 
     ``fit`` is as ``roughmdr.fitting.fit`` returns or stores it.
     """
-    from matplotlib.figure import Figure
+    from roughmdr.pictures.figure import Figure
 
     control = next(name for name in _CONTROLS if name in fit.coordinates)
     load = "pressure" if "pressure_fitted" in fit.variables else "force"

@@ -47,7 +47,7 @@ def draw_law(
     pull-off; separations at which the law is not to be trusted are grey. The title says how far it can be trusted.
     StoreError if no run was computed, or a variable is missing.
     """
-    from matplotlib.figure import Figure
+    from roughmdr.pictures.figure import Figure
 
     if not result.done.any():
         raise StoreError("there is nothing to draw: no run was computed")

@@ -121,7 +121,7 @@ def _check_placed(ensemble: Ensemble) -> None:
 
 def _start(frame: Frame, more: float) -> "tuple[Figure, Axes, Scale]":
     """Return an empty figure of a frame, ``more`` inches taller, its axes, and the scale of lengths."""
-    from matplotlib.figure import Figure
+    from roughmdr.pictures.figure import Figure
 
     aspect = frame.height / frame.width
     tall = min(_SIDE * aspect, _SIDE) if aspect >= 0.2 else 0.2 * _SIDE

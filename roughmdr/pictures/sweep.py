@@ -82,7 +82,7 @@ def draw_sweep(result: ResultView, request: Request, note: str = "") -> "Figure"
     logarithmic axis unless ``request.log`` says otherwise, those below 0 turned round. StoreError where nothing was
     swept or computed, where there is no such variable, or where more than three keys were swept.
     """
-    from matplotlib.figure import Figure
+    from roughmdr.pictures.figure import Figure
 
     if not result.done.any():
         raise StoreError("there is nothing to draw: no run was computed")

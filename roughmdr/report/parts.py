@@ -2,12 +2,16 @@
 
 import math
 import shlex
+from itertools import islice
 
 from roughmdr.batch.resume.kept import Kept, Progress, progress_of
+from roughmdr.batch.resume.so_far import LawSoFar, SoFar
 from roughmdr.report.documents import PartCellTable, PartsTable
 from roughmdr.report.result_document import swept_table
 from roughmdr.scene.sweep import describe_cell
+from roughmdr.schema.units import format_quantity
 from roughmdr.schema.wording import format_seconds, format_table, printable
+from roughmdr.variables import LAW_VARIABLES, STEP_COORDINATES
 
 _MAX_CELLS = 30
 
@@ -18,6 +22,8 @@ def describe_parts(kept: Kept, *, cells: bool = False) -> str:
     lines = [] if kept.share is None else [("part", "{} of {}".format(*kept.share))]
     lines += [("kept", _counted(kept, progress))]
     lines += _cells(kept, progress, len(progress.done) if cells else _MAX_CELLS)
+    law = SoFar(progress).law(kept)
+    lines += [] if law is None else law_lines(progress, law)
     if kept.failed:
         reason = printable(kept.remark.partition("\n")[0])
         lines.append(("failed", f"{len(kept.failed)} runs ({reason}); the next batch repeats them"))
@@ -36,6 +42,25 @@ def describe_progress(kept: Kept, progress: Progress, seconds: float) -> str:
     told = _counted(kept, progress)
     left = 0 if progress.total is None else progress.total - kept.runs
     return told if left <= 0 or not math.isfinite(seconds) else f"{told}; about {format_seconds(left * seconds)} left"
+
+
+def law_lines(progress: Progress, law: LawSoFar) -> list[tuple[str, str]]:
+    """Return the mean law so far with its standard error, where it is known, at a few steps of the path."""
+    assert progress.plan is not None  # or there would be no law
+    plan, (mean, error) = progress.plan, (law.moments.mean, law.moments.standard_error)
+    cell, branch, unit = plan.cells[law.cell], plan.coordinates()["branch"].values, LAW_VARIABLES[law.variable].units
+    values = next(islice(plan.scene.sweep.cells(), law.cell, None))
+    where = f", {printable(describe_cell(values))}" if values else ""
+    name, runs = law.variable.replace("_", " "), f"{law.moments.size} run{'s' * (law.moments.size > 1)}"
+    return [("law so far", f"mean {name} over {runs}{where}")] + [
+        (
+            "",
+            f"{format_quantity(float(mean[number]), unit, error=float(error[number]))} at {plan.control} "
+            f"{format_quantity(float(cell.values[step]), STEP_COORDINATES[plan.control])}, {branch[step]}",
+        )
+        for number, step in enumerate(law.steps.tolist())
+        if math.isfinite(mean[number])
+    ]
 
 
 def parts_table(kept: Kept) -> PartsTable:

@@ -18,6 +18,7 @@ KEPT = (
     "LICENSE",
     "README.md",
     "pyproject.toml",
+    ".ci/conda/recipe.yaml",
     ".ci/release.py",
     "roughmdr/__init__.py",
     "roughmdr/py.typed",
@@ -52,6 +53,7 @@ def test_a_release_is_tagged_and_built(clone: Path) -> None:
     done = release(clone, "7.8.9")
     assert not done.returncode, done.stderr
     assert tomllib.loads((clone / "pyproject.toml").read_text())["project"]["version"] == "7.8.9"
+    assert 'version: "7.8.9"' in (clone / ".ci" / "conda" / "recipe.yaml").read_text()
     assert "version: 7.8.9" in (clone / "CITATION.cff").read_text()
     assert "## 7.8.9 (not" not in (clone / "CHANGELOG.md").read_text()
     tagged = subprocess.run(

@@ -45,6 +45,7 @@ class Kept(NamedTuple):
     runs: int
     by_key: Counter[str] | None
     """Runs by the keys of their cells; None where an earlier version has not noted them."""
+    files: tuple[tuple[str, str], ...]  # names of the task results, each with its hash
     failed: frozenset[tuple[str, int]]  # key and realisation; the next run repeats them
     remark: str  # why the first of them failed
     complete: bool  # whether all runs of a share are kept
@@ -82,7 +83,8 @@ class Progress(NamedTuple):
     scene: Scene | None  # None where it cannot be read here, for lack of a file for example
     plan: Plan | None  # None likewise, or where other versions began the batch
     realizations: int | None  # realisations a cell, with [accuracy] in its first round; None for a share
-    done: list[int]  # of each cell of the plan
+    keys: list[set[str]]  # that each cell of the plan may have
+    done: list[int]  # of each cell
     failed: list[int]
     total: int | None  # runs to be computed; None where that is not known, as with [accuracy]
 
@@ -99,7 +101,7 @@ def read_kept(folder: Path) -> Kept:
     holder, known = _holder(folder)
     if not content and not (folder / LOCK).exists():
         raise StoreError(f"{folder}: holds no runs; if a batch was at work here it has ended, see {folder.stem}")
-    batch, runs, by_key = dict[str, str](), 0, Counter[str]()
+    batch, runs, by_key, files = dict[str, str](), 0, Counter[str](), list[tuple[str, str]]()
     failed, remark, counted, complete = set[tuple[str, int]](), "", True, False
     for line in manifest_lines(content):
         match line:
@@ -109,8 +111,9 @@ def read_kept(folder: Path) -> Kept:
                 complete = False
             case {"complete": True}:
                 complete, failed, remark = True, set(), ""
-            case {"file": str(), "realizations": int(count)}:
+            case {"file": str(file), "realizations": int(count)}:
                 runs += count
+                files.append((file, str(line.get("sha256"))))
                 cells = line.get("cells")
                 counted &= isinstance(cells, dict) and all(isinstance(each, int) for each in cells.values())
                 by_key.update(cells if counted else {})
@@ -120,7 +123,7 @@ def read_kept(folder: Path) -> Kept:
                 remark = remark or why
     scene, made_with, command, began = (batch.get(name, "") for name in ("scene", "versions", "command", "began"))
     kept_by_key = by_key if counted else None
-    told = scene, made_with, command, began, last, runs, kept_by_key, frozenset(failed), remark, complete
+    told = scene, made_with, command, began, last, runs, kept_by_key, tuple(files), frozenset(failed), remark, complete
     return Kept(folder, *told, holder, known)
 
 
@@ -133,24 +136,24 @@ def progress_of(kept: Kept) -> Progress:
         if kept.versions == versions() and kept.by_key is not None:  # else no key is the same
             plan = make_plan(scene)
     if scene is None:
-        return Progress(None, None, None, [], [], None)
+        return Progress(None, None, None, [], [], [], None)
     realizations = 1 if scene.batch.estimator == "expected" else scene.batch.realizations
     if plan is None or kept.by_key is None:
         total = None if scene.accuracy or kept.share else realizations * len(scene.cells)
-        return Progress(scene, None, realizations, [], [], total)
+        return Progress(scene, None, realizations, [], [], [], total)
     rounds, by_key = Rounds(plan), kept.by_key
     keys = rounds.keys
     failures = Counter(key for key, _ in kept.failed)
     done = [sum(by_key[key] for key in of_cell) for of_cell in keys]
     failed = [sum(failures[key] for key in of_cell) for of_cell in keys]
     if scene.accuracy is not None:
-        return Progress(scene, plan, realizations, done, failed, None)
+        return Progress(scene, plan, realizations, keys, done, failed, None)
     if kept.share is not None:
         total = sum(runs.last - runs.first for runs in kept.share.of(rounds.begin()))
-        return Progress(scene, plan, None, done, failed, total)
+        return Progress(scene, plan, None, keys, done, failed, total)
     failed = [min(some, realizations - count) for some, count in zip(failed, done, strict=True)]
     distinct = len({frozenset(of_cell) for of_cell in keys})  # equal cells are computed once
-    return Progress(scene, plan, realizations, done, failed, realizations * distinct)
+    return Progress(scene, plan, realizations, keys, done, failed, realizations * distinct)
 
 
 def _holder(folder: Path) -> tuple[Holder | None, bool]:

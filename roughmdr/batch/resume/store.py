@@ -52,6 +52,17 @@ def manifest_lines(content: bytes) -> Iterator[dict[str, Any]]:
                 yield line
 
 
+def read_task_result(folder: Path, file: str, sha256: str) -> TaskResult | None:
+    """Return a stored task result; None where it is damaged, or no longer there."""
+    path = folder / file
+    with suppress(OSError, ValueError, KeyError, TypeError, zipfile.BadZipFile):
+        if _is_regular(path):
+            content = path.read_bytes()
+            if hashlib.sha256(content).hexdigest() == sha256:
+                return TaskResult.from_bytes(content)
+    return None
+
+
 class CheckpointStore:
     """The folder, while this process holds its lock."""
 
@@ -86,16 +97,7 @@ class CheckpointStore:
 
     def readers(self) -> Iterator[Callable[[], TaskResult | None]]:
         """Yield a function for each task result that reads it; it returns None for one that is damaged."""
-        return (partial(self._read_result, line["file"], line["sha256"]) for line in self._lines)
-
-    def _read_result(self, file: str, sha256: str) -> TaskResult | None:
-        path = self.folder / file
-        with suppress(OSError, ValueError, KeyError, TypeError, zipfile.BadZipFile):
-            if _is_regular(path):
-                content = path.read_bytes()
-                if hashlib.sha256(content).hexdigest() == sha256:
-                    return TaskResult.from_bytes(content)
-        return None
+        return (partial(read_task_result, self.folder, line["file"], line["sha256"]) for line in self._lines)
 
     def write(self, result: TaskResult) -> None:
         """Store a task result for good; StoreError where that fails, and then nothing is changed."""

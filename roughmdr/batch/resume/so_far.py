@@ -1,0 +1,65 @@
+"""The mean law over the runs that are kept so far, at a few steps; each stored task result is read once."""
+
+import math
+from itertools import islice
+from typing import NamedTuple
+
+import numpy as np
+
+from roughmdr.batch.moments import Moments
+from roughmdr.batch.resume.kept import Kept, Progress
+from roughmdr.batch.resume.store import read_task_result
+from roughmdr.batch.task_result import TaskResult
+from roughmdr.numerics.arguments import Ints
+
+_STEPS = 6  # steps told, of which one is the closest approach, also where unloading follows
+
+_FILES = 200  # most task results read at one look, in a second or two; more follow at the next
+
+
+class LawSoFar(NamedTuple):
+    """The law of a cell at some steps, over the runs that are kept."""
+
+    cell: int
+    variable: str
+    steps: Ints
+    moments: Moments  # [step]
+
+
+class SoFar:
+    """Moments of the force, or of what else is asked for, by the keys of the cells."""
+
+    def __init__(self, progress: Progress) -> None:
+        """Take the steps and the cells of a batch; where it cannot be planned here nothing is read."""
+        self.progress, self._read, self._moments = progress, set[tuple[str, str]](), dict[str, Moments]()
+        self._runs = set[tuple[str, int]]()
+        plan = progress.plan
+        if plan is not None:
+            self._variable = plan.watched if plan.watched in plan.variables else plan.variables[0]
+            self._steps = np.unique([math.ceil(plan.steps * part / _STEPS) - 1 for part in range(1, _STEPS + 1)])
+
+    def law(self, kept: Kept) -> LawSoFar | None:
+        """Return the law of the first cell of which runs are kept, None for no run; damaged files do not count."""
+        if self.progress.plan is None:
+            return None
+        for file in islice((each for each in kept.files if each not in self._read), _FILES):
+            self._read.add(file)
+            result = read_task_result(kept.folder, *file)
+            if result is not None:
+                self._add(result)
+        for cell, keys in enumerate(self.progress.keys):
+            if known := [self._moments[key] for key in sorted(keys) if key in self._moments]:
+                most = max(known, key=lambda each: each.size)  # of draws and an expected law
+                return LawSoFar(cell, self._variable, self._steps, most)
+        return None
+
+    def _add(self, result: TaskResult) -> None:
+        if self._variable not in result.variables or result.moments[0].shape[-1] <= self._steps[-1]:
+            return
+        variable = result.variables.index(self._variable)
+        for row, (cell, first) in enumerate(zip(result.cell.tolist(), result.first.tolist(), strict=True)):
+            key = result.keys[cell]
+            if (key, first) not in self._runs:  # another output may have had runs computed again
+                self._runs.add((key, first))
+                new = result.moments_of(row).select(variable).select(self._steps)
+                self._moments[key] = self._moments[key].merged(new) if key in self._moments else new
