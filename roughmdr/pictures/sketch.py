@@ -42,6 +42,8 @@ def sketch(dataset: "xr.Dataset") -> str:
 
 def _sketch_law(result: ResultView) -> str:
     names, cells = result.asked(()), result.cells
+    if not names:
+        return ""
     name = next((each for each in ("force", "pressure") if each in names), names[0])
     of_cell = result.sizes["step"] * result.sizes.get("realization", 1)
     drawn = min(len(cells), _CELLS, _NUMBERS // max(of_cell, 1))

@@ -32,7 +32,7 @@ from roughmdr.storage.files import NETCDF_ENDINGS, ZARR_ENDING, check_ending, ch
 from roughmdr.storage.labelled import Labelled
 from roughmdr.storage.memory import check_memory, describe_available_memory
 from roughmdr.storage.room import Room
-from roughmdr.storage.zarr_store import package as zarr_package
+from roughmdr.storage.zarr_store import check_package
 from roughmdr.variables import FAILED
 
 _FORCE = "force"
@@ -66,9 +66,10 @@ def begun(plan: Plan, target: Path | None, share: Share | None = None, *, resume
     StoreError for a bad target, or where there are results that cannot be reused.
     """
     if target is not None:
-        check_writable(target, plan.scene.inputs)
-        if check_ending(target, "result", (*NETCDF_ENDINGS, ZARR_ENDING)) == ZARR_ENDING:
-            zarr_package(target)
+        as_zarr = check_ending(target, "result", (*NETCDF_ENDINGS, ZARR_ENDING)) == ZARR_ENDING
+        check_writable(target, plan.scene.inputs, as_zarr=as_zarr)
+        if as_zarr:
+            check_package(target)
         target = destination(target)
     rounds, own = Rounds(plan), target if target is None or share is None else share.beside(target)
     with ExitStack() as stack:

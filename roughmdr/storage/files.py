@@ -2,6 +2,7 @@
 
 import ctypes
 import os
+import shutil
 import stat
 import tempfile
 import threading
@@ -64,13 +65,13 @@ def destination(path: Path) -> Path:
         return target
 
 
-def check_writable(path: Path, inputs: Iterable[Path] = ()) -> None:
-    """Raise StoreError if no file can be put at ``path``, or if that would replace one of the inputs."""
+def check_writable(path: Path, inputs: Iterable[Path] = (), *, as_zarr: bool = False) -> None:
+    """Raise StoreError if no file, or Zarr store, can be put at ``path``, or if it would replace one of the inputs."""
     target = destination(path)
     label = f"{path}" if target == path else f"{path} (a link to {target})"
     try:
-        if target.suffix.lower() == ZARR_ENDING:
-            if target.exists() and not is_zarr(target) and not (target.is_dir() and not any(target.iterdir())):
+        if as_zarr:
+            if target.exists() and not is_zarr(target):
                 raise StoreError(f"{label}: is no Zarr store; the output must be one, or not be there")
         elif target.is_dir():
             raise StoreError(f"{label}: is a folder; the output must be a file")
@@ -143,30 +144,45 @@ def replace_atomically(path: Path, folder: Path | None = None) -> Iterator[Path]
 def replace_folder_atomically(path: Path, folder: Path | None = None) -> Iterator[Path]:
     """Yield a temporary folder to write to, as ``replace_atomically`` does a file.
 
-    Where the system cannot exchange two names, nothing is at ``path`` for a moment.
+    Where the system cannot exchange two names, nothing is at ``path`` for a moment; the old one is ``before_of`` it.
     """
-    check_writable(path)
+    check_writable(path, as_zarr=True)
     path = destination(path)
-    with (
-        convert_os_errors(path),
-        tempfile.TemporaryDirectory(
-            prefix=_TEMPORARY_PREFIX, suffix=".tmp", dir=folder or path.parent, ignore_cleanup_errors=True
-        ) as temporary,
-    ):
-        new, old = Path(temporary, "new"), Path(temporary, "old")
-        new.mkdir()
-        yield new
-        for each in (new, *new.rglob("*")):
-            descriptor = os.open(each, os.O_RDONLY)
-            try:
-                os.fsync(descriptor)
-            finally:
-                os.close(descriptor)
-        if not (path.exists() and _exchange(new, path)):
-            if path.exists():
-                path.rename(old)
-            new.rename(path)
-        sync_folder(path.parent)
+    with convert_os_errors(path):
+        temporary = Path(tempfile.mkdtemp(prefix=_TEMPORARY_PREFIX, suffix=".tmp", dir=folder or path.parent))
+        try:
+            yield temporary
+            for each in (*temporary.rglob("*"), temporary):
+                descriptor = os.open(each, os.O_RDONLY)
+                try:
+                    os.fsync(descriptor)
+                finally:
+                    os.close(descriptor)
+            temporary.chmod(0o777 & ~_umask())
+            if not (path.exists() and _exchange(temporary, path)):
+                _replace_in_steps(temporary, path)
+            sync_folder(path.parent)
+        finally:
+            shutil.rmtree(temporary, ignore_errors=True)
+
+
+def before_of(path: Path) -> Path:
+    """Return where the folder at ``path`` stands while another takes its place."""
+    return path.with_name(f"{path.name}.before")
+
+
+def _replace_in_steps(new: Path, path: Path) -> None:
+    old = before_of(path)
+    if path.exists():
+        shutil.rmtree(old, ignore_errors=True)
+        path.rename(old)
+    try:
+        new.rename(path)
+    except BaseException:
+        if old.exists():
+            old.rename(path)
+        raise
+    shutil.rmtree(old, ignore_errors=True)
 
 
 def _exchange(one: Path, other: Path) -> bool:

@@ -66,6 +66,8 @@ def _open(path: Path) -> "Iterator[netCDF4.Dataset]":
         # Warnings are on types and packings that netCDF4 does not support: such variables are left out or left packed.
         with LOCK, warnings.catch_warnings(action="ignore"), netCDF4.Dataset(path) as file:
             yield file
+    except RoughmdrError:
+        raise
     except Exception as error:  # a damaged or foreign file can make the library raise anything
         reason = "a scene, of which roughmdr run makes a result" if path.suffix.lower() == ".toml" else error
         raise RoughmdrError(f"not a netCDF file that can be read ({reason})") from None

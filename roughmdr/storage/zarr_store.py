@@ -21,15 +21,16 @@ if TYPE_CHECKING:
 
 _DIMENSIONS = "_ARRAY_DIMENSIONS"
 """Attribute of format 2 with the names of the dimensions, as xarray writes it."""
+_ORDER = {name: place for place, name in enumerate(LAW_VARIABLES)}
 _CHUNK_SIZE = 2**18  # most elements of a chunk, 2 MB of numbers: Zarr advises at least 1 MB, uncompressed
 
 
 def write_zarr(data: Labelled, path: Path, folder: Path | None = None) -> None:
     """Write ``data`` to ``path`` by way of a temporary folder in ``folder``, beside ``path`` by default.
 
-    StoreError if that fails, and where the package zarr is missing.
+    StoreError if that fails.
     """
-    zarr = package(path)
+    zarr = _package()
     # Warnings are of texts and of common metadata, which later versions of the format may store in other ways.
     with replace_folder_atomically(path, folder) as temporary, warnings.catch_warnings(action="ignore"):
         group = zarr.open_group(temporary, mode="w", zarr_format=3)
@@ -50,6 +51,7 @@ def _write(group: "zarr.Group", name: str, array: Array, attrs: dict[str, Any]) 
         fill_value=math.nan if values.dtype.kind == "f" else None,
         attributes=attrs,
         dimension_names=array.dims,
+        config={"write_empty_chunks": True},  # else NaN would lose their signs
     )
     for block in _blocks(values.shape, chunks):
         part = np.asarray(values[block])
@@ -80,7 +82,10 @@ def read_zarr(path: Path) -> Labelled:
     """Return a whole store; RoughmdrError if it cannot be read."""
     with _opened(path) as group:
         room, found = beside(path), sorted(group.arrays(), key=lambda each: _place(each[0]))
-        arrays = {name: _read(stored, room) for name, stored in found}
+        arrays, sizes = {name: _read(stored, room) for name, stored in found}, dict[str, int]()
+        for name, (dims, values, _) in arrays.items():
+            if any(sizes.setdefault(dim, size) != size for dim, size in zip(dims, values.shape, strict=True)):
+                raise ValueError(f"{name} has another number of {', '.join(dims)} than other arrays")
         return labelled_of(arrays, dict(group.attrs))
 
 
@@ -98,21 +103,32 @@ def read_zarr_dimensions(path: Path) -> dict[str, tuple[str, ...]]:
 
 @contextmanager
 def _opened(path: Path) -> Iterator["zarr.Group"]:
-    zarr = package(path)
+    zarr = _package()
     try:
         with warnings.catch_warnings(action="ignore"):
             yield zarr.open_group(path, mode="r")
+    except RoughmdrError:
+        raise
     except Exception as error:  # a damaged or foreign store can make the library raise anything
         raise RoughmdrError(f"not a Zarr store that can be read ({error})") from None
 
 
-def package(path: Path) -> Any:
-    """Return the package zarr; StoreError, which tells how to install it, where it is missing."""
+def check_package(path: Path) -> None:
+    """Raise StoreError if a store at ``path`` cannot be written, for lack of the package."""
+    try:
+        _package()
+    except RoughmdrError as error:
+        raise StoreError(f"{path}: {error}") from None
+
+
+def _package() -> Any:
     try:
         import zarr
-    except ImportError:
-        raise StoreError(
-            f"{path}: Zarr stores need the package zarr: pip install -e '.[zarr]' in the clone of roughmdr"
+
+        zarr.Group.create_array  # noqa: B018 - which versions before 3 lack
+    except (ImportError, AttributeError):
+        raise RoughmdrError(
+            "Zarr stores need the package zarr, 3.0 or newer: pip install -e '.[zarr]' in the clone of roughmdr"
         ) from None
     return zarr
 
@@ -134,9 +150,7 @@ def _read(stored: "zarr.Array[Any]", room: Room) -> Array:
 
 def _place(name: str) -> tuple[int, str]:
     """Return the place of an array among others, which a store holds in no order: of variables as they are declared."""
-    declared = [*LAW_VARIABLES]
-    own = next((each for each in (name, name.rpartition("_")[0]) if each in LAW_VARIABLES), None)
-    return (len(declared) if own is None else declared.index(own)), name
+    return _ORDER.get(name, _ORDER.get(name.rpartition("_")[0], len(_ORDER))), name
 
 
 def _dimensions(stored: "zarr.Array[Any]") -> tuple[str, ...]:

@@ -22,7 +22,7 @@ import roughmdr as rm
 from roughmdr.cli import main
 from roughmdr.result.view import ResultView
 from roughmdr.storage import files, room, zarr_store
-from roughmdr.storage.labelled import Labelled
+from roughmdr.storage.labelled import Array, Labelled
 from roughmdr.storage.result_file import read_result
 
 SWEPT = scene(
@@ -110,6 +110,17 @@ def test_a_run_goes_on_from_it(tmp_path: Path) -> None:
     assert {path.name for path in tmp_path.iterdir()} == {"out.nc", "out.zarr"}
 
 
+def test_what_a_killed_writer_left_is_in_nobodys_way(tmp_path: Path) -> None:
+    left = tmp_path / "out.zarr.parts" / ".roughmdr.x.tmp"
+    (left / "force").mkdir(parents=True)
+    (left / "force" / "zarr.json").write_text("{")
+    rm.run(scene(), tmp_path / "out.zarr")
+    (tmp_path / "out.zarr").rename(tmp_path / "out.zarr.before")  # killed where names cannot be exchanged
+    rm.run(scene(batch={"realizations": 17}), tmp_path / "out.zarr")
+    assert read_result(tmp_path / "out.zarr").sizes["realization"] == 17
+    assert [path.name for path in tmp_path.iterdir()] == ["out.zarr"]
+
+
 @pytest.mark.parametrize("exchanges", [True, False])
 def test_the_store_of_before_is_replaced_whole(
     tmp_path: Path, exchanges: bool, monkeypatch: pytest.MonkeyPatch
@@ -131,19 +142,37 @@ def test_if_it_cannot_be_written_the_one_of_before_stays(tmp_path: Path, monkeyp
     def full(*_: Any) -> None:
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr(zarr_store, "_write", full)
-    with pytest.raises(rm.RoughmdrError, match=r"out\.zarr: cannot be written: No space left on device"):
-        rm.run(scene(seed=9), tmp_path / "out.zarr", resume=False)
-    assert read_result(tmp_path / "out.zarr").checksum() == before
+    rename = Path.rename
+
+    def only_away(self: Path, target: Path) -> Path:
+        return full() if self.name.endswith(".tmp") else rename(self, target)
+
+    for where, name, broken in ((zarr_store, "_write", full), (Path, "rename", only_away)):
+        with monkeypatch.context() as patched:
+            patched.setattr(files, "_exchange", lambda *_: False)
+            patched.setattr(where, name, broken)
+            with pytest.raises(rm.RoughmdrError, match=r"out\.zarr: cannot be written: No space left on device"):
+                rm.run(scene(seed=9), tmp_path / "out.zarr", resume=False)
+        assert read_result(tmp_path / "out.zarr").checksum() == before
 
 
-@pytest.mark.parametrize("there", ["file", "folder"])
+def test_no_bit_of_any_number_is_lost(tmp_path: Path) -> None:
+    bits = np.array([[-np.nan, np.nan], [-0.0, 5e-324]])
+    odd = Labelled({"force": Array(("step", "x"), bits, {}), "none": Array(("x",), bits[0] * -1.0, {})}, {}, {})
+    zarr_store.write_zarr(odd, tmp_path / "odd.zarr")
+    found = zarr_store.read_zarr(tmp_path / "odd.zarr").variables
+    for name, array in odd.variables.items():
+        assert found[name].values.tobytes() == array.values.tobytes()
+
+
+@pytest.mark.parametrize("there", ["file", "folder", "empty"])
 def test_what_is_no_store_is_not_replaced(tmp_path: Path, there: str) -> None:
     out = tmp_path / "out.zarr"
     if there == "file":
         out.write_text("mine")
     else:
         out.mkdir()
+    if there == "folder":
         (out / "mine").write_text("mine")
     for resume in (True, False):
         with pytest.raises(
@@ -152,14 +181,14 @@ def test_what_is_no_store_is_not_replaced(tmp_path: Path, there: str) -> None:
             rm.run(scene(), out, resume=resume)
     with pytest.raises(rm.StoreError, match=r"out\.zarr: (is a folder|not a netCDF file)"):
         read_result(out)
-    assert (out if there == "file" else out / "mine").read_text() == "mine"
+    assert there == "empty" or (out if there == "file" else out / "mine").read_text() == "mine"
 
 
 def test_without_the_package_it_is_told_before_anything_is_computed(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setitem(sys.modules, "zarr", None)
-    with pytest.raises(rm.StoreError, match=r"Zarr stores need the package zarr: pip install -e '\.\[zarr\]'"):
+    with pytest.raises(rm.StoreError, match=r"out\.zarr: Zarr stores need the package zarr, 3\.0 or newer"):
         rm.run(scene(), tmp_path / "out.zarr")
     assert not list(tmp_path.iterdir())
 
@@ -177,6 +206,12 @@ def test_damage_is_told(tmp_path: Path) -> None:
     with pytest.raises(rm.StoreError, match="force is not finite, and status says that it was computed"):
         read_result(tmp_path / "out.zarr")
     chunk.write_bytes(content)
+    shorter = Labelled.of(xr.open_zarr(tmp_path / "out.zarr").load())
+    status = shorter.variables["status"]
+    shorter.variables["status"] = status._replace(values=status.values[:1])
+    zarr_store.write_zarr(shorter, tmp_path / "shorter.zarr")
+    with pytest.raises(rm.StoreError, match="status has another number of realization than other arrays"):
+        read_result(tmp_path / "shorter.zarr")
     table["attributes"]["checksum"] = "0"
     metadata.write_text(json.dumps(table))
     assert read_result(tmp_path / "out.zarr").integrity_fault() == "its numbers are not those that were written"
@@ -225,6 +260,21 @@ def test_large_curves_take_little_memory(tmp_path: Path, ending: str, monkeypatc
     for name in ("force", "contact_area", "stiffness"):
         np.testing.assert_array_equal(found.variables[name].values, expected[name])
     assert {each.name for each in tmp_path.iterdir()} == {out.name, f"first.{ending}"}
+
+
+def test_without_space_on_the_disk_curves_stay_in_memory(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    rm.run(scene(), tmp_path / "out.nc")
+    expected = read_result(tmp_path / "out.nc").checksum()
+
+    def full(*_: Any) -> None:
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(room, "IN_MEMORY", 0)
+    monkeypatch.setattr("os.posix_fallocate", full)
+    assert read_result(tmp_path / "out.nc").checksum() == expected
+    monkeypatch.setattr("roughmdr.storage.memory.available_memory", lambda: (10.0, "the 10 B of this machine"))
+    with pytest.raises(rm.StoreError, match=r"takes about .* of memory, with 10 B left"):
+        read_result(tmp_path / "out.nc")
 
 
 @pytest.mark.large

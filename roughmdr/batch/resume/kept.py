@@ -33,6 +33,15 @@ class Holder(NamedTuple):
     since: str  # ISO 8601, UTC
 
 
+class StoredFile(NamedTuple):
+    """A stored task result."""
+
+    name: str
+    sha256: str
+    keys: frozenset[str]
+    """Keys of its cells."""
+
+
 class Kept(NamedTuple):
     """Finished runs that a folder keeps."""
 
@@ -45,7 +54,7 @@ class Kept(NamedTuple):
     runs: int
     by_key: Counter[str] | None
     """Runs by the keys of their cells; None where an earlier version has not noted them."""
-    files: tuple[tuple[str, str], ...]  # names of the task results, each with its hash
+    files: tuple[StoredFile, ...]
     failed: frozenset[tuple[str, int]]  # key and realisation; the next run repeats them
     remark: str  # why the first of them failed
     complete: bool  # whether all runs of a share are kept
@@ -101,7 +110,7 @@ def read_kept(folder: Path) -> Kept:
     holder, known = _holder(folder)
     if not content and not (folder / LOCK).exists():
         raise StoreError(f"{folder}: holds no runs; if a batch was at work here it has ended, see {folder.stem}")
-    batch, runs, by_key, files = dict[str, str](), 0, Counter[str](), list[tuple[str, str]]()
+    batch, runs, by_key, files = dict[str, str](), 0, Counter[str](), list[StoredFile]()
     failed, remark, counted, complete = set[tuple[str, int]](), "", True, False
     for line in manifest_lines(content):
         match line:
@@ -113,10 +122,11 @@ def read_kept(folder: Path) -> Kept:
                 complete, failed, remark = True, set(), ""
             case {"file": str(file), "realizations": int(count)}:
                 runs += count
-                files.append((file, str(line.get("sha256"))))
                 cells = line.get("cells")
                 counted &= isinstance(cells, dict) and all(isinstance(each, int) for each in cells.values())
-                by_key.update(cells if counted else {})
+                of_file = cells if counted and cells else {}
+                by_key.update(of_file)
+                files.append(StoredFile(file, str(line.get("sha256")), frozenset(of_file)))
             case {"failed": list(some), "remark": str(why)}:
                 pairs = (each for each in some if isinstance(each, list) and len(each) == 2)
                 failed |= {(key, run) for key, run in pairs if isinstance(key, str) and isinstance(run, int)}

@@ -7,14 +7,14 @@ from typing import NamedTuple
 import numpy as np
 
 from roughmdr.batch.moments import Moments
-from roughmdr.batch.resume.kept import Kept, Progress
+from roughmdr.batch.resume.kept import Kept, Progress, StoredFile
 from roughmdr.batch.resume.store import read_task_result
 from roughmdr.batch.task_result import TaskResult
 from roughmdr.numerics.arguments import Ints
 
 _STEPS = 6  # steps told, of which one is the closest approach, also where unloading follows
 
-_FILES = 200  # most task results read at one look, in a second or two; more follow at the next
+_FILES = 64  # most task results read at one look, of 16 MB at most each; more follow at the next
 
 
 class LawSoFar(NamedTuple):
@@ -31,7 +31,7 @@ class SoFar:
 
     def __init__(self, progress: Progress) -> None:
         """Take the steps and the cells of a batch; where it cannot be planned here nothing is read."""
-        self.progress, self._read, self._moments = progress, set[tuple[str, str]](), dict[str, Moments]()
+        self.progress, self._read, self._moments = progress, set[StoredFile](), dict[str, Moments]()
         self._runs = set[tuple[str, int]]()
         plan = progress.plan
         if plan is not None:
@@ -42,16 +42,20 @@ class SoFar:
         """Return the law of the first cell of which runs are kept, None for no run; damaged files do not count."""
         if self.progress.plan is None:
             return None
-        for file in islice((each for each in kept.files if each not in self._read), _FILES):
+        begun = set(kept.by_key or ())
+        cell = next((number for number, keys in enumerate(self.progress.keys) if not keys.isdisjoint(begun)), None)
+        if cell is None:
+            return None
+        told = self.progress.keys[cell]
+        unread = (each for each in kept.files if each not in self._read and not told.isdisjoint(each.keys))
+        for file in islice(unread, _FILES):
             self._read.add(file)
-            result = read_task_result(kept.folder, *file)
+            result = read_task_result(kept.folder, file.name, file.sha256)
             if result is not None:
                 self._add(result)
-        for cell, keys in enumerate(self.progress.keys):
-            if known := [self._moments[key] for key in sorted(keys) if key in self._moments]:
-                most = max(known, key=lambda each: each.size)  # of draws and an expected law
-                return LawSoFar(cell, self._variable, self._steps, most)
-        return None
+        if not (known := [self._moments[key] for key in sorted(told) if key in self._moments]):
+            return None
+        return LawSoFar(cell, self._variable, self._steps, max(known, key=lambda each: each.size))
 
     def _add(self, result: TaskResult) -> None:
         if self._variable not in result.variables or result.moments[0].shape[-1] <= self._steps[-1]:

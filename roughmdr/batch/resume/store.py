@@ -134,7 +134,7 @@ class CheckpointStore:
             (self.folder / MANIFEST).unlink(missing_ok=True)  # first: without it nothing else counts
             for path in self.folder.iterdir():
                 if _OWN_FILES.fullmatch(path.name):
-                    shutil.rmtree(path) if path.is_dir() and not path.is_symlink() else path.unlink()
+                    _remove(path)
         self.scene, self.replaces, self._has_failed, self._lines, self._next = "", "", False, [], 1
 
     def _read_manifest(self) -> list[dict[str, Any]]:
@@ -171,6 +171,10 @@ class CheckpointStore:
                 raise
 
 
+def _remove(path: Path) -> None:
+    shutil.rmtree(path) if path.is_dir() and not path.is_symlink() else path.unlink()
+
+
 @contextmanager
 def locked_store(target: Path, *, of_share: bool = False) -> Iterator[CheckpointStore]:
     """Open the store of a result or a share, made if need be, for this process alone.
@@ -184,7 +188,7 @@ def locked_store(target: Path, *, of_share: bool = False) -> Iterator[Checkpoint
         with convert_os_errors(folder):
             for path in folder.glob("*.tmp"):
                 if _OWN_FILES.fullmatch(path.name):
-                    path.unlink()
+                    _remove(path)
             store = CheckpointStore(folder, of_share=of_share)
         try:
             yield store
