@@ -66,9 +66,8 @@ def begun(plan: Plan, target: Path | None, share: Share | None = None, *, resume
     StoreError for a bad target, or where there are results that cannot be reused.
     """
     if target is not None:
-        as_zarr = check_ending(target, "result", (*NETCDF_ENDINGS, ZARR_ENDING)) == ZARR_ENDING
-        check_writable(target, plan.scene.inputs, as_zarr=as_zarr)
-        if as_zarr:
+        check_writable(target, plan.scene.inputs, as_zarr=target.suffix.lower() == ZARR_ENDING)
+        if check_ending(target, "result", (*NETCDF_ENDINGS, ZARR_ENDING)) == ZARR_ENDING:
             check_package(target)
         target = destination(target)
     rounds, own = Rounds(plan), target if target is None or share is None else share.beside(target)

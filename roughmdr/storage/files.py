@@ -167,8 +167,8 @@ def replace_folder_atomically(path: Path, folder: Path | None = None) -> Iterato
 
 
 def before_of(path: Path) -> Path:
-    """Return where the folder at ``path`` stands while another takes its place."""
-    return path.with_name(f"{path.name}.before")
+    """Return where the Zarr store at ``path`` stands while another takes its place."""
+    return path.with_name(f"{_TEMPORARY_PREFIX}{path.name}.before")
 
 
 def _replace_in_steps(new: Path, path: Path) -> None:

@@ -115,7 +115,7 @@ def test_what_a_killed_writer_left_is_in_nobodys_way(tmp_path: Path) -> None:
     (left / "force").mkdir(parents=True)
     (left / "force" / "zarr.json").write_text("{")
     rm.run(scene(), tmp_path / "out.zarr")
-    (tmp_path / "out.zarr").rename(tmp_path / "out.zarr.before")  # killed where names cannot be exchanged
+    (tmp_path / "out.zarr").rename(files.before_of(tmp_path / "out.zarr"))  # killed where no names can be exchanged
     rm.run(scene(batch={"realizations": 17}), tmp_path / "out.zarr")
     assert read_result(tmp_path / "out.zarr").sizes["realization"] == 17
     assert [path.name for path in tmp_path.iterdir()] == ["out.zarr"]

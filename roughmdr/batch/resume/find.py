@@ -16,7 +16,7 @@ from roughmdr.errors import StoreError
 from roughmdr.numerics.arguments import Ints
 from roughmdr.scene.identity import LAYOUT
 from roughmdr.schema.toml_text import parse_toml
-from roughmdr.storage.files import before_of
+from roughmdr.storage.files import before_of, is_zarr
 from roughmdr.storage.labelled import Labelled
 from roughmdr.storage.result_file import read_result
 from roughmdr.variables import DONE, FAILED, LAW_VARIABLES, PULL_OFF_NUMBERS, RUN_DIAGNOSTICS
@@ -28,7 +28,7 @@ _REMEDY = "give another output, or --fresh (resume=False) to replace it"
 
 def find_previous(target: Path) -> Labelled | None:
     """Return the result at ``target``, None where no file is; StoreError where it is no result, or was changed."""
-    if not target.exists() and before_of(target).exists():  # a run was killed while it replaced it
+    if not target.exists() and is_zarr(before_of(target)):  # a run was killed while it replaced it
         before_of(target).rename(target)
     if not target.exists():
         return None
