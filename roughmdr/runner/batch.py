@@ -1,5 +1,6 @@
 """A plan while it is carried out: round after round of tasks, stored as they finish, assembled at the end."""
 
+import shutil
 import threading
 from collections.abc import Iterator, Sequence
 from contextlib import ExitStack, contextmanager
@@ -10,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from roughmdr.batch.collect import Collector
-from roughmdr.batch.costs import ensemble_bytes, result_bytes
+from roughmdr.batch.costs import ensemble_bytes, file_bytes, result_bytes
 from roughmdr.batch.foresee import check_foreseen
 from roughmdr.batch.plan import Plan
 from roughmdr.batch.resume.find import check_no_less, find_previous, is_finished, reuse
@@ -36,6 +37,7 @@ from roughmdr.storage.zarr_store import check_package
 from roughmdr.variables import FAILED
 
 _FORCE = "force"
+_COPIES = 4  # of large curves on the disk: task results, those that came, those in their places, and the result
 
 
 class Beginning(NamedTuple):
@@ -101,7 +103,9 @@ def at_work(
         runs = sum(method.realizations for method in beginning.rounds.methods)  # runs in the first round
         if assembled:
             remedy = "fewer steps or realizations, or output.keep = 'statistics', take less"
-            check_memory(result_bytes(plan, runs, in_file=writer.target is not None), "the run", remedy)
+            needed = _COPIES * file_bytes(plan, runs)
+            on_disk = writer.target is not None and shutil.disk_usage(writer.target.parent).free > needed
+            check_memory(result_bytes(plan, runs, on_disk=on_disk), "the run", remedy)
         if backend.is_local:
             asperities = min(backend.workers, runs) * ensemble_bytes(plan)
             check_memory(asperities, "the asperities of the runs in progress", "fewer asperities or workers take less")

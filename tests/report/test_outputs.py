@@ -1,6 +1,7 @@
 """Where an output goes: through links, over what is there, under any name, with little memory and on full disks."""
 
 import os
+import re
 import shutil
 import signal
 import subprocess
@@ -395,7 +396,8 @@ def test_a_run_that_memory_cannot_hold_is_refused_before_it_computes(tmp_path: P
         )
         assert done.returncode == status, done.stderr
         if status:
-            assert "the run takes about 51.2 GB of memory, with" in done.stderr
+            # With space on the disk for four times the curves, the numbers beside them; else the curves as well.
+            assert re.search(r"the run takes about (12\.1|61\.2) GB of memory, with", done.stderr)
             assert "left of the 8 GB of address space (ulimit -v)" in done.stderr
             assert "output.keep = 'statistics'" in done.stderr
         else:
