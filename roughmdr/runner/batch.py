@@ -37,7 +37,7 @@ from roughmdr.storage.zarr_store import check_package
 from roughmdr.variables import FAILED
 
 _FORCE = "force"
-_COPIES = 4  # of large curves on the disk: task results, those that came, those in their places, and the result
+_COPIES = 4  # number of copies of large curves on the disk: task results, as they came, in their places, the result
 
 
 class Beginning(NamedTuple):
