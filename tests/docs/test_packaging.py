@@ -68,7 +68,7 @@ def test_the_image_takes_files_that_are_there_and_commands_that_exist() -> None:
             assert all((ROOT / source).exists() for source in sources), rest
         elif name == "RUN" and rest.startswith("roughmdr "):
             assert shlex.split(rest)[1] in main.commands
-    assert [rest for name, rest in found if name == "USER"] == ["roughmdr"]  # what runs is not root
+    assert [rest for name, rest in found if name == "USER"] == ["roughmdr"]  # runs are not those of root
     assert ["ENTRYPOINT", '["roughmdr"]'] in found
 
 

@@ -92,8 +92,8 @@ class Progress(NamedTuple):
     scene: Scene | None  # None where it cannot be read here, for lack of a file for example
     plan: Plan | None  # None likewise, or where other versions began the batch
     realizations: int | None  # realisations a cell, with [accuracy] in its first round; None for a share
-    keys: list[set[str]]  # that each cell of the plan may have
-    done: list[int]  # of each cell
+    keys: list[set[str]]  # keys that each cell of the plan may have
+    done: list[int]  # number of runs of each cell
     failed: list[int]
     total: int | None  # runs to be computed; None where that is not known, as with [accuracy]
 
