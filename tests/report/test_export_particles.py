@@ -95,7 +95,9 @@ def test_the_header_tells_loss_tension_and_stiffness(file: Path) -> None:
     said = header_of(exported(file, "told.table", branch="unloading"))
     with xr.open_dataset(file) as data:
         lost = data.isel(realization=0).roughmdr.hysteresis()
-    loss, taken = map(float, re.search(r"loss: (\S+) N m there and back, and loading takes (\S+);", said).groups())
+    told = re.search(r"loss: (\S+) N m to (\S+) m \(loading takes (\S+)\), there and back;", said)
+    loss, reached, taken = map(float, told.groups())  # type: ignore[union-attr]
+    assert reached == pytest.approx(-curve(file, "loading")[0].min(), rel=1e-5)
     assert loss == pytest.approx(float(lost.energy_lost), rel=1e-3)
     assert taken == pytest.approx(float(lost.work_of_loading), rel=1e-3)
     r, _, force = of_lammps(file.parent / "told.table")
@@ -107,6 +109,24 @@ def test_the_header_tells_loss_tension_and_stiffness(file: Path) -> None:
     assert deepest == pytest.approx(-curve(file, "unloading")[1].min(), rel=1e-8)
     stiffest = float(re.search(r"stiffness: up to (\S+) N/m", said)[1])
     assert stiffest == pytest.approx(np.max(-np.diff(force) / np.diff(r)), rel=1e-3)
+
+
+def test_each_loop_of_a_path_tells_its_loss(tmp_path: Path) -> None:
+    """It is that of a path that comes as far alone, over the overclosure of a loop."""
+    far, depths = 6.0, (1.0, 0.5, 0.0)
+    loops = [np.concatenate([np.linspace(far, deep, 120), np.linspace(deep, far, 120)]) for deep in depths]
+
+    def said(name: str, *parts: Floats) -> str:
+        separations = [f"{each} sigma" for each in np.concatenate(parts)]
+        rm.run(scene(path={"separation": separations}, batch={"estimator": "expected"}), tmp_path / f"{name}.nc")
+        return header_of(exported(tmp_path / f"{name}.nc", f"{name}.table", error=0.05))
+
+    pattern = r"(\S+ N m to \S+ m) \(loading takes \S+\)"
+    together = re.findall(pattern, said("all", *loops))
+    assert together == [re.search(pattern, said(f"{i}", loop))[1] for i, loop in enumerate(loops)]  # type: ignore[index]
+    losses = [float(each.split()[0]) for each in together]
+    assert losses == sorted(losses)
+    assert losses[0] < 0.5 * losses[-1]
 
 
 @pytest.mark.parametrize(

@@ -5,17 +5,19 @@ evenly spaced in r^2, takes F/r for linear in r^2; ``fix wall/table`` reads the 
 """
 
 from collections.abc import Iterator
+from itertools import pairwise
 
 import numpy as np
 
 from roughmdr.errors import StoreError
 from roughmdr.numerics.arguments import Floats
-from roughmdr.report.export.law import Law, Quantity, law_of
+from roughmdr.report.export.law import Law, Quantity
 from roughmdr.report.export.stable import StablePart
 from roughmdr.report.export.text import Column
 from roughmdr.report.export.units import UnitSystem
 from roughmdr.result.view import ResultView
 from roughmdr.schema.units import format_quantity
+from roughmdr.variables import SEPARATION
 
 _DOUBLINGS = 8
 """How often the number of points is doubled at most, from that of the steps."""
@@ -93,8 +95,19 @@ def whole_lines(
         deepest = f"the deepest at a step is {-law.value.min() / unit.size:.9g} {unit.name}"
         yield "tension", f"{-force[low]:.9g} {unit.name} at {x[low]:.9g} {length.name}; {deepest}"
     yield "stiffness", f"up to {np.max(np.diff(force) / np.diff(x)):.4g} {unit.name}/{length.name}, for the time step"
-    if {leg.branch for leg in cell.legs} >= {"loading", "unloading"}:
-        both = [law_of(cell, quantity, branch) for branch in ("loading", "unloading")]
-        on, off = (np.trapezoid(each.value, -each.separation) / (unit.size * length.size) for each in both)
-        loss = f"{max(on - off, 0.0):.4g} {names} there and back, and loading takes {on:.4g}"
-        yield "loss", f"{loss}; a table has no memory: loading and unloading are two"
+    losses = [
+        f"{lost:.4g} {names} to {to:.6g} {length.name} (loading takes {on:.4g})" for to, lost, on in _loops(cell, units)
+    ]
+    if losses:
+        yield "loss", f"{', '.join(losses)}, there and back; a table has no memory: loading and unloading are two"
+
+
+def _loops(cell: ResultView, units: UnitSystem) -> Iterator[tuple[float, float, float]]:
+    """Yield the overclosure that each loading reaches, the energy lost until its unloading ends, and what it takes."""
+    length, energy = units.length.size, units.force.size * units.length.size
+    separation, force = cell.coordinates[SEPARATION.name].values.reshape(-1), cell.mean("force")[0].reshape(-1)
+    for there, back in pairwise(cell.legs):
+        if (there.branch, back.branch) == ("loading", "unloading"):
+            joined = np.concatenate([there.steps[-1:], back.steps])
+            taken, regained = (np.trapezoid(force[steps], -separation[steps]) for steps in (there.steps, joined))
+            yield -float(separation[joined].min()) / length, max(taken + regained, 0.0) / energy, taken / energy
