@@ -154,6 +154,7 @@ def test_a_mean_field_evens_out_the_force_of_a_patch() -> None:
     assert np.median(number) ** -0.5 > 1.5 * true
 
 
+@pytest.mark.large
 def test_at_the_same_force_it_is_the_scatter_of_the_area() -> None:
     """It is far below that of the force at the same separation."""
     section = {

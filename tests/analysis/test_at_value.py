@@ -143,6 +143,7 @@ def within(fine: xr.Dataset, times: int, name: str, branch: str, rng: np.random.
     return holds
 
 
+@pytest.mark.large
 def test_the_stated_errors_hold_against_a_finer_path() -> None:
     """At jumps of 1 to 30 contacts too."""
     rng = np.random.default_rng(0)

@@ -33,6 +33,7 @@ def run(**changes: Any) -> xr.Dataset:
     return rm.run(scene(**{"adhesion": None, "path": path, "batch": {"estimator": "expected"}, **changes}))
 
 
+@pytest.mark.large
 def test_the_expected_law_is_f_of_n() -> None:
     scaled = run(asperities=ASPERITIES | {"radius": "50 um"}, output={"variables": list(_ORDERS)}).roughmdr.normalise(
         "gw"

@@ -146,6 +146,7 @@ def test_statistics_and_curves_stop_alike() -> None:
     np.testing.assert_array_equal(statistics.accuracy_reached, curves.accuracy_reached)
 
 
+@pytest.mark.large
 def test_cells_of_a_sweep_share_a_method_that_suits_all() -> None:
     of = {"contact_area": "6 %", "at_pressure": "10 MPa"}
     found = go(asking(of, sweep={"asperities.height.std": ["0.1 um", "1 um"]}))

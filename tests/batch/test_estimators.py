@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 import scipy.stats
 import xarray as xr
+from forms import large
 from oracles.expected_paraboloids import Rough
 from scenes import ASPERITIES, SCENE, scene
 
@@ -41,7 +42,7 @@ def run(estimator: str, **changes: Any) -> xr.Dataset:
     [
         (Rough("normal", UM, 50 * UM, 5 * UM, MODULUS), (30, 49)),
         (Rough("normal", UM, 50 * UM, 5 * UM, MODULUS, 0.05), (30, 80)),
-        (Rough("exponential", UM, 50 * UM, 100 * UM, MODULUS, 0.05), (0, 49)),
+        large(Rough("exponential", UM, 50 * UM, 100 * UM, MODULUS, 0.05), (0, 49)),
     ],
 )
 def test_the_expected_law_is_the_double_integral(rough: Rough, steps: tuple[int, ...]) -> None:
@@ -96,6 +97,7 @@ def rms(estimator: str, count: int, exact: xr.DataArray, **changes: Any) -> floa
     return float(np.sqrt(((found - exact) ** 2).mean()) / np.abs(exact).max())
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("adhesion", [None, SCENE["adhesion"]])
 def test_stratified_is_nearer_than_sampled_and_of_first_order(adhesion: dict[str, Any] | None) -> None:
     exact = run("expected", adhesion=adhesion).force[0] / ASPERITIES["count"]

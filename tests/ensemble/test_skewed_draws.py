@@ -135,6 +135,7 @@ def test_forces_whose_squares_no_float_holds(effective_modulus: float) -> None:
     assert count[0] == count[1]
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("keep", ["curves", "statistics"])
 def test_same_bits_for_any_tasks_and_after_an_interruption(
     keep: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch

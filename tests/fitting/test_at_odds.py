@@ -46,6 +46,7 @@ def test_a_prior_that_the_curve_contradicts_is_told(columns: list[str], error: f
     assert "residuals are systematic" in said
 
 
+@pytest.mark.few(1)
 @pytest.mark.filterwarnings("ignore::roughmdr.LimitWarning")
 @pytest.mark.parametrize("columns", [STATED, PLAIN], ids=["stated", "unstated"])
 def test_curves_that_do_not_share_a_value_are_told(columns: list[str]) -> None:
@@ -56,7 +57,7 @@ def test_curves_that_do_not_share_a_value_are_told(columns: list[str]) -> None:
         assert "residuals are systematic" in text
 
 
-@pytest.mark.few(2)
+@pytest.mark.few(1)
 @pytest.mark.parametrize("columns", [STATED, PLAIN], ids=["stated", "unstated"])
 @pytest.mark.parametrize("noise", ["constant", "proportional"])
 def test_no_more_than_chance_is_told(columns: list[str], noise: str) -> None:

@@ -44,6 +44,7 @@ def test_a_sound_curve_is_not_doubted(kind: str, noise: float, points: int, seed
     assert not any(doubt in said for doubt in DOUBTS), said
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("seed", range(3))
 def test_a_curve_without_contact(seed: int) -> None:
     tip, measured = a_curve()

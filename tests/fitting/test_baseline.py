@@ -27,6 +27,7 @@ def line_of(measured: pd.DataFrame, level: float, tilt: float) -> tuple[float, f
     return level * largest, tilt * largest / float(np.ptp(measured.separation))
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("kind", ["hertz", "cone", "jkr"])
 def test_it_is_found_and_leaves_the_rest(kind: str) -> None:
     """The other parameters, their errors and the residual are those of the curve without a line."""

@@ -32,7 +32,7 @@ def hertz(points: int) -> tuple[Floats, Floats, Floats]:
 
 
 @pytest.mark.parametrize("stated", [False, True])
-@pytest.mark.parametrize("rho", [0.0, large(0.3), 0.6, large(0.9)])
+@pytest.mark.parametrize("rho", [0.0, *map(large, [0.3, 0.6, 0.9])])
 def test_intervals_hold_true_values(rho: float, stated: bool) -> None:
     """And white noise keeps its intervals but for one curve of 44, which makes them 1 % wider in the mean."""
     slopes, left, inverse = hertz(300)

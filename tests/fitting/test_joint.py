@@ -6,6 +6,7 @@ import numpy as np
 import pandas as pd
 import pytest
 import xarray as xr
+from forms import large
 from measurements import CASES, inside, noise_of
 from scipy.optimize import least_squares
 from scipy.signal import lfilter
@@ -51,7 +52,7 @@ def test_scipy_finds_the_same() -> None:
     assert len(rm.plot(fit).axes) == 2  # of the offset and of the residual
 
 
-@pytest.mark.parametrize("rho", [0.0, 0.6])
+@pytest.mark.parametrize("rho", [0.0, large(0.6)])
 def test_the_same_curve_several_times_divides_the_variance(rho: float) -> None:
     """With noise whose correlation is found: others tell as much less as it lasts longer, to some percent."""
     one = curves(2, points=400)[0]
@@ -65,6 +66,7 @@ def test_the_same_curve_several_times_divides_the_variance(rho: float) -> None:
     assert ratio == pytest.approx(2.0, rel=1e-3 if rho == 0.0 else 0.05)
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("columns", [["separation", "force", "force_error"], ["separation", "force"]])
 def test_what_one_curve_does_not_tell_others_do(columns: list[str]) -> None:
     """A radius for each curve, one modulus: only a curve whose radius a prior gives tells it."""
@@ -76,6 +78,7 @@ def test_what_one_curve_does_not_tell_others_do(columns: list[str]) -> None:
     assert (fit.failure == "").all()
 
 
+@pytest.mark.large
 def test_rough_surfaces_at_any_scale() -> None:
     case, found = CASES["elastic"], list[float]()
     force = case.force()
@@ -128,6 +131,7 @@ def unlike(level: float, modulus: float, seed: int) -> pd.DataFrame:
     return measured.assign(force=measured.force + level * measured.force.max())
 
 
+@pytest.mark.large
 @pytest.mark.filterwarnings("ignore::roughmdr.LimitWarning")
 def test_curves_that_differ_come_to_the_common_value_of_least_squares() -> None:
     """A baseline for all of curves that read 0, 1/2 and -3 without contact; a modulus may end at its bound."""

@@ -37,7 +37,7 @@ def drawn(slopes: NDArray[np.float64], noise: NDArray[np.float64]) -> tuple[NDAr
     return np.array(held), np.array(errors)
 
 
-@pytest.mark.few(3)
+@pytest.mark.few(1)
 @pytest.mark.parametrize(
     ("kind", "noise"), [each for each in product(SLOPES, NOISES) if each != ("one deciding step", "alternating")]
 )
@@ -49,6 +49,7 @@ def test_intervals_hold_true_values(kind: str, noise: str) -> None:
     assert share.max() < 98.5
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("kind", SLOPES)
 def test_standard_errors_are_those_of_even_noise(kind: str) -> None:
     slopes = SLOPES[kind]

@@ -36,6 +36,7 @@ def test_the_ends_of_the_root() -> None:
     assert root(5e-324, 2.0) == pytest.approx(math.sqrt(5e-324), rel=4 * _ROUNDING)
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("length", [1e-9, 1e-6, 1.0])
 def test_a_sum_is_that_of_its_contacts(length: float) -> None:
     table = rm.generate(

@@ -41,6 +41,7 @@ def test_a_sweep_tells_which_cells_are_refused() -> None:
         rm.run(table)
 
 
+@pytest.mark.large
 def test_of_a_large_sweep_some_cells_are_checked_and_the_others_fail_with_the_reason() -> None:
     """So that the check does not take longer than small runs themselves."""
     modulus = np.geomspace(3e6, 9e6, 250).tolist()

@@ -54,6 +54,7 @@ def told(process: "subprocess.Popen[str]") -> dict[str, Any]:
     return table
 
 
+@pytest.mark.large
 @pytest.mark.skipif(numba.config.DISABLE_JIT, reason="processes of its own compile")
 def test_a_copy_elsewhere_finds_the_code_in_folders_that_it_may_not_write(tmp_path: Path) -> None:
     """Two processes begin with an empty folder at once; a copy of the package reads what they left."""

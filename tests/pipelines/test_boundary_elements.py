@@ -18,6 +18,7 @@ def paraboloid(points: int, size: float) -> Floats:
     return -0.5 * (along[:, None] ** 2 + along[None, :] ** 2)
 
 
+@pytest.mark.few(1)
 @pytest.mark.few(2)
 @pytest.mark.parametrize("size", PATCHES)
 def test_a_paraboloid_in_a_periodic_patch(size: int) -> None:

@@ -30,6 +30,9 @@ class Studied(NamedTuple):
         return case["counted"].squeeze("case").to_numpy().tolist()
 
 
+pytestmark = pytest.mark.large  # the study takes most of it
+
+
 @pytest.fixture(scope="module")
 def studied(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Studied]:
     folder = tmp_path_factory.mktemp("left_out")

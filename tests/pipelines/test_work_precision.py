@@ -48,6 +48,7 @@ def test_springs_come_nearer_in_proportion_to_their_number(result: xr.Dataset) -
         assert slope(error[:, quantity], evaluations) == pytest.approx(-1.0, abs=0.1)
 
 
+@pytest.mark.large
 def test_root_finders_come_nearer_with_every_decade_of_tolerance(result: xr.Dataset) -> None:
     for method, finest in (("brentq", 1e-12), ("Abel quadrature", 1e-12), ("plain NumPy", 1e-2)):
         error, evaluations = points(result, TIP, method)
@@ -55,6 +56,7 @@ def test_root_finders_come_nearer_with_every_decade_of_tolerance(result: xr.Data
         assert error[-1, 0] < finest < error[0, 0]
 
 
+@pytest.mark.large
 @pytest.mark.parametrize("scene", [HERTZ, JKR])
 def test_draws_come_nearer_as_the_root_of_their_number_and_even_ones_begin_nearer(
     result: xr.Dataset, scene: str
@@ -70,6 +72,7 @@ def test_draws_come_nearer_as_the_root_of_their_number_and_even_ones_begin_neare
     assert own_visits[0] == pytest.approx(visits[0], rel=0.05)
 
 
+@pytest.mark.large
 @pytest.mark.parametrize("scene", [HERTZ, JKR])
 def test_the_expected_law_is_exact_for_less_than_one_realisation(result: xr.Dataset, scene: str) -> None:
     error, evaluations = points(result, scene, "expected")
@@ -78,6 +81,7 @@ def test_the_expected_law_is_exact_for_less_than_one_realisation(result: xr.Data
     assert evaluations[0] < simulate(SURFACES[scene], "sampled").evaluations
 
 
+@pytest.mark.large
 def test_errors_that_are_asked_for_are_met(result: xr.Dataset) -> None:
     for scene in (HERTZ, JKR):
         for method in ("sampled", "stratified", "auto"):
@@ -85,6 +89,7 @@ def test_errors_that_are_asked_for_are_met(result: xr.Dataset) -> None:
             assert (own.error.sel(quantity="force") <= 2.0 * own.setting).all()  # of two runs each
 
 
+@pytest.mark.large
 def test_the_cheapest_comes_to_the_error_and_is_no_dearer_than_any_other(result: xr.Dataset) -> None:
     found = 0
     for scene in (TIP, HERTZ, JKR):

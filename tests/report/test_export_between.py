@@ -87,6 +87,7 @@ def judged(seeds: range, **changes: Any) -> list[float]:
     return [each for each in found if each is not None]
 
 
+@pytest.mark.large
 def test_sampled_adhesive_tables_are_within_their_error() -> None:
     found = judged(range(1, 4))
     assert len(found) > 9

@@ -161,7 +161,7 @@ def bodies(draw: st.DrawFn) -> Viscoelasticity:
     return body(list(zip(shares, times, strict=True)), speed, back, draw(st.sampled_from([0.0, 1e-3, 10.0])))
 
 
-@settings(deadline=None, max_examples=60)
+@settings(deadline=None, max_examples=20)
 @given(bodies())
 def test_unloading_bears_less_than_loading_and_relaxation_less_than_elasticity(of: Viscoelasticity) -> None:
     separation, steps = there_and_back(), 12

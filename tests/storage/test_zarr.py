@@ -233,7 +233,8 @@ def test_chunks_are_small_and_cover_all_once(shape: list[int]) -> None:
         assert sum(np.prod(each) for each in sizes) == np.prod(shape)
 
 
-@pytest.mark.parametrize("ending", [large("nc"), "zarr"])
+@pytest.mark.large
+@pytest.mark.parametrize("ending", ["nc", "zarr"])
 def test_large_curves_take_little_memory(tmp_path: Path, ending: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """Computed, extended and read; the numbers are those of a run in memory."""
     asperities = {**scene()["asperities"], "count": 3}
