@@ -1,5 +1,6 @@
 """The force alone of the expected law, by a rule over the shape parameters that was found for parameters nearby."""
 
+import math
 from collections import Counter
 from typing import NamedTuple
 
@@ -7,7 +8,7 @@ import numpy as np
 
 from roughmdr.aggregate import LoadingPath
 from roughmdr.aggregate.tabor import jkr_validity
-from roughmdr.aggregate.totals import ERROR, FORCE
+from roughmdr.aggregate.totals import ERROR, FORCE, RADIUS, STIFFNESS
 from roughmdr.ensemble import Source
 from roughmdr.ensemble.nodes import Rule
 from roughmdr.errors import OutOfRange
@@ -52,6 +53,17 @@ class Force(NamedTuple):
     """The rule by which it was found; None where steps had rules of their own."""
 
 
+class Slopes(NamedTuple):
+    """Derivatives of the force at given separations, off the jumps."""
+
+    stiffness: Floats
+    """With respect to minus the separation [N/m]."""
+    modulus: Floats
+    """With respect to the logarithm of E* [N]."""
+    work: Floats
+    """With respect to the logarithm of the work of adhesion [N]."""
+
+
 @np.errstate(all="ignore")  # numbers that no float can hold are refused
 def expected_force(
     source: Source, path: LoadingPath, effective_modulus: float, adhesion: Adhesion, rule: ForceRule | None = None
@@ -60,20 +72,63 @@ def expected_force(
 
     OutOfRange where a contact is not representable, or the error is too large.
     """
-    alike = source.node_count(2) == source.node_count(1)
-    if len(adhesion.candidates) > 1:
-        coarse = as_ensemble(source, source.nodes(Rule.smooth(1))).columns
-        validity = jkr_validity(source.shape_name, source.sigma, coarse, effective_modulus, adhesion)
-        adhesion = adhesion.resolved(validity.jkr_error)
-    problem, split = MeanProblem(source, path, effective_modulus, adhesion, (FORCE,)), None
-    if alike:
+    adhesion = _resolved(source, effective_modulus, adhesion)
+    total, nodes, rule, split = _sums(MeanProblem(source, path, effective_modulus, adhesion, (FORCE,)), rule)
+    largest = float(np.abs(total[FORCE]).max())
+    error = KERNEL_ERROR + rule.error + (float(total[ERROR].max()) / largest if largest > 0.0 else 0.0)
+    warnings_of(error, 0.0)
+    changes = _changes(path, nodes, alike=_are_alike(source))
+    return Force(source.expected_count * total[FORCE], error, changes, None if split else rule)
+
+
+@np.errstate(all="ignore")
+def expected_slopes(
+    source: Source, path: LoadingPath, effective_modulus: float, adhesion: Adhesion, rule: ForceRule | None = None
+) -> Slopes | None:
+    """Return the derivatives of ``expected_force``; None where other numbers matter as well: under an attraction with a
+    range, and under JKR where contacts are lost one by one.
+
+    At a given separation the force is homogeneous of degree one in E* and w. Under JKR the springs let go at
+    l = sqrt(2 pi a w/E*), the force of contacts of a radius a changes by -2 E* a dl and their indentation by -dl.
+    """
+    adhesion = _resolved(source, effective_modulus, adhesion)
+    adheres = adhesion.work > 0.0
+    if adheres and (adhesion.cohesive or not source.all_alike):
+        return None
+    rows = (FORCE, RADIUS, STIFFNESS) if adheres else (FORCE, STIFFNESS)
+    total, *_ = _sums(MeanProblem(source, path, effective_modulus, adhesion, rows), rule)
+    force, stiffness, a = total[FORCE], total[STIFFNESS], total[RADIUS]
+    let_go = np.sqrt(2.0 * math.pi * a * adhesion.work / effective_modulus)
+    work = 0.5 * (stiffness - 2.0 * effective_modulus * a) * let_go
+    return Slopes(*(source.expected_count * each for each in (stiffness, force - work, work)))
+
+
+def _are_alike(source: Source) -> bool:
+    return source.node_count(2) == source.node_count(1)
+
+
+def _resolved(source: Source, effective_modulus: float, adhesion: Adhesion) -> Adhesion:
+    """Return the adhesion with the model that is used."""
+    if len(adhesion.candidates) == 1:
+        return adhesion
+    coarse = as_ensemble(source, source.nodes(Rule.smooth(1))).columns
+    validity = jkr_validity(source.shape_name, source.sigma, coarse, effective_modulus, adhesion)
+    return adhesion.resolved(validity.jkr_error)
+
+
+def _sums(problem: MeanProblem, rule: ForceRule | None) -> tuple[Floats, list[QuadratureNode], ForceRule, bool]:
+    """Return the totals of one asperity [row, step], the nodes, their rule, and whether steps had rules of their own;
+    OutOfRange where they are not finite.
+    """
+    split = None
+    if _are_alike(problem.source):
         rule = ForceRule((Rule.smooth(1),), smooth=False, error=0.0)
     if rule is None:
         chosen, split = converge_at_kinks(problem, dissipating=False)
         rule, nodes = ForceRule(chosen.rules, chosen.smooth, chosen.error), chosen.nodes
     else:
         nodes = set_up(problem, *rule.rules)
-    steps = list(range(path.separation.size))
+    steps = list(range(problem.path.separation.size))
     partial = PartialRule.of(problem, rule.rules, nodes) if rule.smooth else None
     total, _ = sums_of(problem, partial, nodes, steps, dissipating=False)
     if split is not None:
@@ -81,11 +136,7 @@ def expected_force(
             total[:, step] = split.total(step, dissipating=False)
     if not np.isfinite(total).all():
         raise OutOfRange("the expected law is not finite")
-    largest = float(np.abs(total[FORCE]).max())
-    error = KERNEL_ERROR + rule.error + (float(total[ERROR].max()) / largest if largest > 0.0 else 0.0)
-    warnings_of(error, 0.0)
-    changes = _changes(path, nodes, alike=alike)
-    return Force(source.expected_count * total[FORCE], error, changes, rule if split is None else None)
+    return total, nodes, rule, split is not None
 
 
 def _changes(path: LoadingPath, nodes: list[QuadratureNode], *, alike: bool) -> Changes:

@@ -12,7 +12,7 @@ from roughmdr.aggregate.under_machine import separations_of
 from roughmdr.batch.paths import machine_path
 from roughmdr.batch.realization import simulate_realization
 from roughmdr.errors import OutOfRange, RoughmdrError, SceneError, StoreError
-from roughmdr.expected import Changes, ForceRule, expected_force
+from roughmdr.expected import Changes, ForceRule, Slopes, expected_force, expected_slopes
 from roughmdr.fitting.correlation import correlation_of_noise
 from roughmdr.fitting.measured import MeasuredCurve
 from roughmdr.fitting.parameters import MACHINE, OF_THE_CURVE, OFFSET, Known, Parameter, baselines, free_parameters
@@ -165,6 +165,22 @@ class Model:
         force, error, changes, rule = expected_force(*own, self._rule)
         changes = changes._replace(control=_control_of(changes, jumps) - self._offset(x))
         return Load(force / self._area(scene), error, changes, rule)
+
+    def slopes(self, x: Floats, rule: ForceRule | None) -> Slopes | None:
+        """Return the derivatives of the force at the separations that the law has; None where other numbers matter."""
+        scene = self.scene(x)
+        path = self._path_in(scene, x, self.curve.values)
+        if not (self._is_plain and isinstance(path, LoadingPath)):
+            return None
+        own = scene.asperities, path, scene.effective_modulus, scene.adhesion_model
+        try:
+            found = expected_slopes(*own, rule)
+        except OutOfRange:  # the stiffness is infinite where contact is lost
+            return None
+        if found is None:
+            return None
+        self.evaluations += 1
+        return Slopes(*(each / self._area(scene) for each in found))
 
     def _borne_by(self, x: Floats, load: Floats, rule: ForceRule | None) -> Load:
         """Return the load of the law where the spring of the machine bears another."""

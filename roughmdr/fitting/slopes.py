@@ -1,16 +1,23 @@
-"""Derivatives of the law with respect to the free parameters: differences, on a machine at its separations."""
+"""Derivatives of the law with respect to the free parameters, on a machine at its separations.
+
+Those by the two bodies and the zero of the control follow from the law itself where contacts are not lost one by one;
+others are differences.
+"""
 
 import numpy as np
 from numpy.typing import NDArray
 
 from roughmdr.expected.compute import KERNEL_ERROR
 from roughmdr.fitting.model import Model, Point
-from roughmdr.fitting.parameters import length_scale
+from roughmdr.fitting.parameters import BASELINE, BASELINE_SLOPE, OFFSET, Parameter, length_scale
 from roughmdr.fitting.spring import Spring
 from roughmdr.numerics.arguments import Floats
 
 _LONGEST_STEP = 0.01  # largest change of x in differences
 _JUMP = 0.5  # ratio of the differences to both sides of x, beyond which one of them holds a jump
+_MODULUS = "material.modulus"
+_TOLD = {OFFSET: "stiffness", _MODULUS: "modulus", "material.effective_modulus": "modulus", "adhesion.work": "work"}
+"""Keys by which a law tells its derivatives, and their names in ``Slopes``."""
 
 
 def slopes_of(model: Model, x: Floats) -> Floats:
@@ -50,19 +57,47 @@ def _at_given(model: Model, middle: Point) -> Floats:
         inside = (low <= x) & (x <= high) | (direction == 0.0)
         return model.point_at(x).deviations if inside.all() else np.full_like(middle.deviations, np.inf)
 
-    def slope(direction: Floats, step: float) -> Floats:
+    def slope(number: int) -> Floats:
+        direction, step = np.eye(middle.x.size)[number], float(steps[number])
         return _difference(model, middle.deviations, [side(direction), side(-direction)], step)
 
-    pairs = zip(np.eye(middle.x.size), steps.tolist(), strict=True)
-    return np.stack([slope(*pair) for pair in pairs], axis=1)
+    known = _from_the_law(model, middle)
+    return np.stack([slope(i) if each is None else each for i, each in enumerate(known)], axis=1)
+
+
+def _from_the_law(model: Model, middle: Point) -> list[Floats | None]:
+    """Return the derivatives of the deviations that need no differences; None for others."""
+    slopes = model.slopes(middle.x, middle.rule) if any(p.key in _TOLD for p in model.parameters) else None
+
+    def change(number: int, p: Parameter) -> Floats | None:
+        if p.key in (BASELINE, BASELINE_SLOPE) and model.borne is not model.curve.load:
+            return model.baselines[:, number]
+        if slopes is None or p.key not in _TOLD or (p.key == _MODULUS and model.start.counter is not None):
+            return None
+        if p.key == OFFSET:
+            return -p.scale * slopes.stiffness
+        return getattr(slopes, _TOLD[p.key]) if p.logarithmic else None
+
+    changes = [change(*each) for each in enumerate(model.parameters)]
+    pairs = zip(changes, _of_priors(model, middle.x).T, strict=True)
+    return [None if each is None else np.append(each / model.curve.weight, prior) for each, prior in pairs]
+
+
+def _of_priors(model: Model, x: Floats) -> Floats:
+    """Return the derivatives [row, parameter] of the deviations from what is known otherwise."""
+    own, pairs = np.eye(x.size), zip(model.parameters, x.tolist(), strict=True)
+    rows = [own[i] * (p.per_x(each) / p.prior[1]) for i, (p, each) in enumerate(pairs) if p.prior is not None]
+    return np.asarray(model.noise * np.vstack([*rows, model.told[0]]))
 
 
 def _spring(model: Model, x: Floats) -> Spring:
     """Return how the load changes with the separation on a machine, whose spring bears a given load."""
     middle, scene = model.point(x), model.scene(x)
-    step = _step(middle) * length_scale(model.curve)
+    step, told = _step(middle) * length_scale(model.curve), model.slopes(x, middle.rule)
 
     def slope(steps: NDArray[np.bool_]) -> Floats:
+        if told is not None:
+            return np.where(steps, -told.stiffness, 0.0)
         sides = [model.load(x, model.curve.values + sign * step * steps).load for sign in (1.0, -1.0)]
         return _difference(model, middle.load, sides, step)
 

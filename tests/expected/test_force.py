@@ -57,7 +57,7 @@ ON_A_BASE = {"shape": "tabulated", "r": [0.0, 1e-6, 2e-6, 9e-6, 12e-6], "f": [0.
         (TIP, {"model": "jkr", "work": 0.05}),
         (TIP, {"model": "dugdale", "work": 0.05, "range": "100 nm"}),
         large(ON_A_BASE, {"model": "jkr", "work": 0.02}),
-        (ON_A_BASE, {"model": "jkr", "work": 0.2}),
+        large(ON_A_BASE, {"model": "jkr", "work": 0.2}),
         large(TIP | {"radius": DRAWN}, {"model": "jkr", "work": 0.05}),
     ],
     ids=["jkr", "dugdale", "on a base", "sticky on a base", "drawn"],
