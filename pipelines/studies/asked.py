@@ -169,7 +169,7 @@ def report(result: xr.Dataset) -> str:
     cheaper = (np.abs(stated["independent"]) <= 1.0) & (stated["method"] != "independent asperities")
     rows = []
     for number in range(result.sizes["request"]):
-        row = {str(name): values.item() for name, values in result.isel(request=number).variables.items()}
+        row = {str(name): values.values.item() for name, values in result.isel(request=number).variables.items()}
         asked = [row["kind"], row["quantity"].replace("_", " "), f"{100.0 * row['asked']:.2g} %", row["method"]]
         errors = [f"{row[name]:.2f}" for name in ("reached", "error", "unknown")]
         cost = f"{row['realizations']:.0f}", f"{row['realizations'] / row['fewest']:.2g}", f"{row['whole']:.1f}"
