@@ -10,8 +10,8 @@ from statistics import median
 
 import numpy as np
 import xarray as xr
-from studies.comparison import in_cases
-from studies.study import Figure, Study, blank, named, table, timed
+from studies.comparison import in_cases, panels
+from studies.study import Figure, Study, named, table, timed
 
 from benchmarks import child
 from benchmarks.process import in_new_process
@@ -99,14 +99,13 @@ def capacity(result: xr.Dataset) -> dict[str, float]:
     runs = sum(each.last - each.first for task in tasks for each in task.ranges)
     curve = 8.0 * len(variables) * plan.cells[0].path.separation.size
     of_task = result.sel(scheduler="distributed").isel(workers=-1)
-    by_part = {"caller": of_task.task_caller, "scheduler": of_task.task_scheduler, "writer": result.writing_time}
     return {
         "runs": runs,
         "tasks": len(tasks),
-        "computing": runs
-        * ENSEMBLE
-        * float(result.drawing_time + result.visiting_time),  # seconds, summed over the cores
-        **{name: len(tasks) * float(seconds) for name, seconds in by_part.items()},
+        "computing": runs * ENSEMBLE * float(result.drawing_time + result.visiting_time),  # summed over the cores
+        "caller": len(tasks) * float(of_task.task_caller),
+        "scheduler": len(tasks) * float(of_task.task_scheduler),
+        "writer": len(tasks) * float(result.writing_time),
         "statistics": 4.0 * curve * CELLS,
         "curves": curve * runs,
         "task_results": len(tasks) * float(result.result_size),
@@ -131,23 +130,19 @@ def measure(quick: bool) -> xr.Dataset:
 
 
 def draw(result: xr.Dataset) -> Figure:
-    """Draw the overheads of a cell and of a task, memory, and the speed-up of two workers."""
-    figure = blank(13, 3.9)
-    cells, memory, tasks, workers = figure.subplots(1, 4)
-    for ax, values, title in (
+    """Draw the overheads of a cell and of a task, and memory."""
+    figure, (cells, tasks, memory) = panels(11, 3.9, 3)
+    for panel, values, title in (
         (cells, result.cell_overhead, "Overhead of a cell [ms]"),
         (tasks, result.task_overhead.isel(workers=-1), "Overhead of a task, two workers [ms]"),
     ):
-        bars = ax.bar(values[values.dims[0]].to_numpy(), 1e3 * values.to_numpy())
-        ax.bar_label(bars, fmt="%.3g")
-        ax.set_title(title)
+        bars = panel.bar(values[values.dims[0]].to_numpy(), 1e3 * values.to_numpy())
+        panel.bar_label(bars, fmt="%.3g")
+        panel.set_title(title)
     for name in ("peak_memory", "memory_before"):
         memory.semilogx(result.realizations, result[name] / 1e6, "o-", label=result[name].attrs["long_name"])
     memory.set(title="Memory, statistics kept [MB]", xlabel="realisations", ylim=(0.0, MEMORY_GOAL))
     memory.legend(frameon=False)
-    workers.plot(result.pool, result.speed_up, "C0o", alpha=0.5)
-    workers.plot(result.pool, result.speed_up.median("repeat"), "C0_", ms=30)
-    workers.set(title="Two workers for one, times as fast", xlim=(-0.5, 1.5))
     return figure
 
 
