@@ -45,7 +45,8 @@ def carry_out(case: Case, folder: Path) -> dict[str, Any]:
     if result is None:
         return found | {"printed": run.stderr.strip().splitlines()[-1]}
     result = result.squeeze(drop=True)
-    loading = result["separation"].to_numpy()[: int(result["separation"].argmin()) + 1]
+    separation = result["separation"].to_numpy()
+    loading = separation[: int(np.argmin(separation)) + 1]
     at = result.isel(step=loading.size - 1)
     return found | {
         "contact_fraction": float(at["contact_fraction"]),
