@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 import xarray as xr
-from oracles.plain_sums import Sums, with_brentq, with_numpy
+from oracles.plain_sums import with_numpy
 from scipy.optimize import brentq
 from studies.study import Study, named, timed
 
@@ -24,7 +24,7 @@ from roughmdr.kernels.adhesion import Adhesion
 from roughmdr.kernels.choose import choose
 from roughmdr.loading.staircase import no_memory, staircase
 from roughmdr.numerics.jit import compiled
-from roughmdr.shapes import SHAPES as SHAPE_OF, PowerLaw, ProfileShape, Shape
+from roughmdr.shapes import SHAPES as SHAPE_OF, ProfileShape, Shape
 from roughmdr.shapes.kappa import kappa
 
 MODULUS, WORK = 4e6, 0.05
@@ -49,8 +49,7 @@ LOADING = np.linspace(4e-6, -0.5e-6, 200)  # separations [m]
 _SLOW = {("tabulated", "dugdale"): 0.001}
 """Share of the asperities that is measured; of all others with a range of adhesion a twentieth."""
 ASPERITIES = {False: 1_000_000, True: 20_000}
-_CLOSED = ("paraboloid", "cone", "flat_punch")  # shapes without a profile that a root finder is given
-_BRENTQ = 300, 200  # asperities, or contacts of one, that a root finder is given
+_BRENTQ = 200  # contacts that a root finder is given
 
 
 def section(count: int, shape: str = "paraboloid", **parameters: Any) -> dict[str, Any]:
@@ -85,10 +84,9 @@ def by_the_sum(ensemble: Ensemble, adhesion: Adhesion, repeats: int) -> float:
 def scalar_g(shape: Shape) -> Callable[[float], float]:
     """Return g(a) of one shape as a function of floats, the fastest for a root finder."""
     width, rise, params = shape.nondimensional()
-    if isinstance(shape, PowerLaw):
+    if not isinstance(shape, ProfileShape):
         factor, n = kappa(params) * rise, params
         return lambda a: factor * (a / width) ** n
-    assert isinstance(shape, ProfileShape)
     mdr_profile, t_of_radius = compiled(shape.profile.mdr_profile), compiled(shape.profile.t_of_radius)
     numbers = np.atleast_1d(np.asarray(params, dtype=np.float64))
     return lambda a: rise * mdr_profile(t_of_radius(a, width, numbers), numbers)[2]
@@ -102,7 +100,7 @@ def by_brentq(ensemble: Ensemble) -> float:
     fold, g = float(off.contact_radius), scalar_g(shape)
     g(fold)  # compiled before the clock runs
     top = 0.999999 * shape.end if shape.name == "sphere" else 1e3 * fold
-    depths = np.linspace(1e-8, 1e-6, _BRENTQ[1])
+    depths = np.linspace(1e-8, 1e-6, _BRENTQ)
 
     def indentation(a: float, delta: float) -> float:
         return g(a) - math.sqrt(2.0 * math.pi * a * WORK / MODULUS) - delta
@@ -116,17 +114,14 @@ def by_brentq(ensemble: Ensemble) -> float:
 
 
 def by_method(count: int, repeats: int) -> xr.Dataset:
-    """Measure paraboloids: by the package there and back, by NumPy and a root finder in loading; and a million."""
+    """Measure paraboloids: by the package there and back, by NumPy in loading; and a million."""
     large, small = ensemble_of(count), ensemble_of(count // 10)
 
-    def visits(sums: Callable[..., Sums], asperities: int, work: float) -> int:
-        columns = small.height[:asperities], small.parameters["radius"][:asperities]
-        return sums(*columns, LOADING, MODULUS, work).visits
+    def visits(work: float) -> int:
+        return with_numpy(small.height, small.parameters["radius"], LOADING, MODULUS, work).visits
 
-    cost = []
-    for work in (0.0, WORK):
-        plain = [timed(partial(visits, *of, work)) for of in ((with_numpy, count), (with_brentq, _BRENTQ[0]))]
-        cost.append([by_the_sum(large, Adhesion(work), repeats), *map(each, plain)])
+    works = 0.0, WORK
+    cost = [[by_the_sum(large, Adhesion(work), repeats), each(timed(partial(visits, work)))] for work in works]
     arguments = {"effective_modulus": MODULUS, "work": WORK, "unload": True}
     seconds, size = in_new_process(load_separation, section(count), LOADING.tolist(), arguments)
     variables = {
@@ -134,7 +129,7 @@ def by_method(count: int, repeats: int) -> xr.Dataset:
         "large_time": ((), seconds, named("one ensemble, 200 steps each way, JKR", "s")),
         "large_memory": ((), size, named("peak memory above the ensemble", "byte")),
     }
-    coords = {"contact": ["Hertz", "JKR"], "method": ["roughmdr", "numpy", "brentq"]}
+    coords = {"contact": ["Hertz", "JKR"], "method": ["roughmdr", "numpy"]}
     return xr.Dataset(variables, coords, {"asperities": count})
 
 
@@ -148,7 +143,7 @@ def by_law(count: int, repeats: int) -> xr.Dataset:
             share = _SLOW.get((shape, law), 0.05 if law == "dugdale" and shape != "paraboloid" else 1.0)
             ensemble = ensemble_of(max(20, int(share * count)), shape, **parameters)
             found[i, j] = by_the_sum(ensemble, adhesion, repeats)
-        if shape not in _CLOSED:
+        if shape != "flat_punch":  # its radius is known
             by_root[i] = by_brentq(ensemble)
     variables = {
         "law_time": (("law_shape", "law"), found, named("time per contact and step", "ns")),

@@ -12,21 +12,21 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import tomli_w
 import xarray as xr
 from hypothesis import HealthCheck, Phase, given, seed, settings
 
 from roughmdr.shapes import SCENE_SHAPES
 from studies.comparison import draw_outcomes, of_rows, panels
-from studies.random_scenes.judge import OUTCOMES, judge
+from studies.random_scenes.judge import OUTCOMES, Defect, judge
 from studies.random_scenes.scenes import scenes, write_inputs
-from studies.study import Figure, Study, in_two_processes, table, timed
+from studies.study import Figure, Study, in_two_processes, timed
 
 SEEDS = (2026, 2027)  # one for each process
 FULL, QUICK = 10_000, 300  # scenes in all
 QUICK_COHESIVE = ("paraboloid", "flat_punch")  # other shapes take long to compile with adhesion of finite range
 KINDS = ("shape", "adhesion", "source", "estimator")
 _COLOURS = ("#1b6ca8", "#e0a030", "#b8bcc2")
-_LISTED = 12  # reasons in the table
 _WORDS = {"comparisons": ("claims about numbers that held", "1"), "run_time": ("run time of a scene", "s")}
 
 
@@ -50,7 +50,11 @@ def search(start: int, count: int, folder: Path, cohesive: tuple[str, ...]) -> l
     @settings(max_examples=count, deadline=None, database=None, phases=phases, suppress_health_check=no_checks)
     @given(scenes(folder, cohesive))
     def judged(scene: dict[str, Any]) -> None:
-        verdict, seconds = timed(partial(judge, scene))
+        try:
+            verdict, seconds = timed(partial(judge, scene))
+        except Defect as defect:
+            defect.add_note(tomli_w.dumps(scene))
+            raise
         records.append(dict(zip(KINDS, kind_of(scene), strict=True)) | verdict._asdict() | {"run_time": seconds})
 
     judged()
@@ -77,19 +81,14 @@ def draw(result: xr.Dataset) -> Figure:
 
 
 def report(result: xr.Dataset) -> str:
-    """Return how many scenes there were, what became of them, and why those were refused that were."""
+    """Return how many scenes there were, and what became of them."""
     count, found = result.sizes["scene"], Counter(result.outcome.values)
     outcomes = ", ".join(f"{found[name]} ({100.0 * found[name] / count:.1f} %) {name}" for name in OUTCOMES)
     median, nearly_all, longest = np.quantile(result.run_time, (0.5, 0.99, 1.0))
-    reasons = [[f"{n}", f"{why}"] for why, n in Counter(result.reason.values).most_common() if why]
     return f"""
 {count} scenes drawn over all that a scene may ask for: {outcomes}. In none of them was there a NaN, an infinite number,
 or an exception that is no refusal, and {int(result.comparisons.sum())} claims about their numbers all held.
 Half of the scenes take up to {1e3 * median:.0f} ms, 99 % up to {nearly_all:.1g} s, one {longest:.1f} s.
-
-The most frequent of {len(reasons)} reasons to refuse a scene or a run, without their numbers:
-
-{table(["scenes", "reason"], reasons[:_LISTED])}
 """
 
 

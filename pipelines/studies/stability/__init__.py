@@ -203,7 +203,7 @@ def _worst(result: xr.Dataset) -> Floats:
     """Return the worst error of each case, above 1 with a wrong answer, next to 0 if all are refused; NaN if none."""
     answers = result.answers.sum("law")
     excess = result.excess.max("law").clip(min=_LEAST).fillna(1e-300).where(answers.sum("outcome") > 0)
-    return excess.where(answers.sel(outcome=WRONG) == 0, 2.0).to_numpy()
+    return np.asarray(excess.where(answers.sel(outcome=WRONG) == 0, 2.0))
 
 
 def _draw_outcomes(panel: Axes, result: xr.Dataset, name: str) -> None:
