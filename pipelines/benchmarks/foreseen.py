@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import xarray as xr
-from studies.study import Figure, Study, blank, named
+from studies.study import Study, named
 
 import roughmdr
 from benchmarks.batch import tables
@@ -52,18 +52,4 @@ def measure(quick: bool) -> xr.Dataset:
     )
 
 
-def draw(result: xr.Dataset) -> Figure:
-    """Draw the foreseen over the measured, for time and memory; the band is a factor of two."""
-    figure = blank(7, 3.6)
-    panel = figure.subplots()
-    x = np.arange(result.sizes["scene"])
-    for shift, name in ((-0.1, "time"), (0.1, "memory")):
-        panel.plot(x + shift, result[name].sel(of="plan") / result[name].sel(of="run"), "o", label=name)
-    panel.axhspan(0.5, 2.0, color="0.9", zorder=0)
-    panel.set(yscale="log", ylim=(0.3, 3.0), ylabel="foreseen over taken", title="roughmdr plan beside the run")
-    panel.set_xticks(x, result["scene"].to_numpy())
-    panel.legend(frameon=False)
-    return figure
-
-
-STUDY = Study("foreseen", "What roughmdr plan foresees", measure, draw, tables, f"1 of {len(SCENES)} scenes")
+STUDY = Study("foreseen", "What roughmdr plan foresees", measure, {}, tables, f"1 of {len(SCENES)} scenes")

@@ -13,7 +13,8 @@ import xarray as xr
 
 import roughmdr as rm
 from roughmdr.batch.stopping_rule import FEWEST
-from studies.study import Figure, Study, blank, in_two_processes, named, table, timed, without_limits
+from studies.comparison import groups_of, of_rows, panels
+from studies.study import Figure, Study, in_two_processes, table, timed, without_limits
 
 SEED = 11
 REQUESTS = {False: tuple(range(40)), True: (12, 30, 32)}  # numbers of the requests in full and in reduced form
@@ -31,7 +32,6 @@ _COLUMNS = {
     "independent": "true error of independent asperities over that asked for",
     "realizations": "number of realisations",
     "fewest": "number of realisations that would have been enough",
-    "seconds": "run time of the realisations in seconds",
     "whole": "time of the run with the choice of the method in seconds",
 }
 
@@ -131,16 +131,14 @@ def carry_out(number: int) -> dict[str, Any]:
         "error": (float(values.mean()) - true) / scale, "unknown": unknown / scale,
         "independent": (independent - true) / scale, "realizations": count,
         "fewest": max(float(FEWEST if count > 1 else 1), (2.0 * spread / left) ** 2 if left > 0.0 else math.nan),
-        "seconds": float(found.run_time.sum()), "whole": whole,
+        "whole": whole,
     }  # fmt: skip
 
 
 def measure(quick: bool) -> xr.Dataset:
     """Carry out all requests, or a few of them."""
-    rows = in_two_processes(carry_out, REQUESTS[quick])
-    numbers = {name: ("request", [row[name] for row in rows], named(about)) for name, about in _COLUMNS.items()}
-    texts = {name: ("request", [row[name] for row in rows]) for name in ("kind", "quantity", "method")}
-    return xr.Dataset(numbers, texts)
+    words = {name: (about, "1") for name, about in _COLUMNS.items()}
+    return of_rows(words, in_two_processes(carry_out, REQUESTS[quick]), "request")
 
 
 def draw(result: xr.Dataset) -> Figure:
@@ -148,11 +146,8 @@ def draw(result: xr.Dataset) -> Figure:
 
     The latter are those of requests that were met.
     """
-    figure = blank(12, 5)
-    left, right = figure.subplots(1, 2)
-    methods = dict.fromkeys(result["method"].values.tolist())
-    for method in methods:
-        own = result.isel(request=np.flatnonzero(result["method"].values == method))
+    figure, (left, right) = panels(12, 5, 2)
+    for (method,), own in groups_of(result, "method"):
         left.plot(own["reached"], np.maximum(abs(own["error"]), own["unknown"]), "o", ms=5, label=method)
         met = own.isel(request=np.flatnonzero(own["reached"].to_numpy() <= 1.0))
         right.plot(met["realizations"], met["realizations"] / met["fewest"], "o", ms=5)
@@ -171,20 +166,19 @@ def report(result: xr.Dataset) -> str:
     stated = result.isel(request=np.flatnonzero(result["reached"].to_numpy() <= 1.0))
     off = np.maximum(np.abs(stated["error"].to_numpy()) - stated["unknown"].to_numpy(), 0.0)
     bounded, over = np.mean(off <= stated["reached"].to_numpy()), (stated["realizations"] / stated["fewest"]).to_numpy()
-    cheaper = (np.abs(stated["independent"].to_numpy()) <= 1.0) & (
-        stated["method"].to_numpy() != "independent asperities"
-    )
-    rows = [
-        [str(row["kind"].item()), str(row["quantity"].item()).replace("_", " "), f"{100.0 * float(row.asked):.2g} %",
-         str(row["method"].item()), *(f"{float(row[name]):.2f}" for name in ("reached", "error", "unknown")),
-         f"{float(row.realizations):.0f}", f"{float(row.realizations / row.fewest):.2g}", f"{float(row.whole):.1f}"]
-        for row in (result.isel(request=number) for number in range(result.sizes["request"]))
-    ]  # fmt: skip
+    cheaper = (np.abs(stated["independent"]) <= 1.0) & (stated["method"] != "independent asperities")
+    rows = []
+    for number in range(result.sizes["request"]):
+        row = {str(name): values.values.item() for name, values in result.isel(request=number).variables.items()}
+        asked = [row["kind"], row["quantity"].replace("_", " "), f"{100.0 * row['asked']:.2g} %", row["method"]]
+        errors = [f"{row[name]:.2f}" for name in ("reached", "error", "unknown")]
+        cost = f"{row['realizations']:.0f}", f"{row['realizations'] / row['fewest']:.2g}", f"{row['whole']:.1f}"
+        rows.append([*asked, *errors, *cost])
     head = ["surface", "asked", "error", "method", "stated", "true", "of the truth", "realisations", "over fewest", "s"]
     return f"""{result.sizes["request"]} requests; {stated.sizes["request"]} stated that they were met. Of these
 {100.0 * np.mean(off <= 1.0):.0f} % were, and {100.0 * bounded:.0f} % of the stated errors bound the true one, as far as
 the truth is known. {np.sum(over <= 2.0)} took at most twice the fewest realisations, the median {np.median(over):.2g}.
-In {np.sum(cheaper)} independent asperities would have been right enough, which their stated error does not promise.
+In {int(cheaper.sum())} independent asperities would have been right enough, which their stated error does not promise.
 
 {table(head, rows)}
 

@@ -3,7 +3,7 @@
 import contextlib
 import math
 from collections.abc import Callable
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import xarray as xr
@@ -18,7 +18,8 @@ from roughmdr.kernels.interface import Columns
 from roughmdr.kernels.profile.layout import COUNT, FOOT, TOP
 from roughmdr.loading.staircase import staircase
 from roughmdr.shapes import SHAPES, Shape
-from studies.comparison import in_cases
+from studies.comparison import groups_of, of_rows
+from studies.stated_error.scenes import Rng, decades
 from studies.study import Study, in_two_processes, table, without_limits
 
 NEAREST = 1e-12  # smallest distance to a fold, over its depth
@@ -28,41 +29,33 @@ _TRIES = 50
 ASPERITIES, QUICK = 100_000, 480
 _GROUP_SIZE = 100
 _WEIGHT = {"tabulated": 0.2}  # share of cases of a shape, else 1: its reference is slow
-_MODELS = ("none", "JKR")
-_LABELS = {"shape": "shape of the asperity", "adhesive": "1 with JKR adhesion", "seed": "number of the asperity"}
 _COLUMNS = {
     "true_error": ("true error of the force", "1"),
     "stated_error": ("bound on it", "1"),
     "distance": ("distance to the end of the branch", "1"),
 }
-Rng = np.random.Generator
 Group = tuple[str, bool, range]  # some asperities: shape, whether with adhesion, and their numbers
 
 
-def power_of_ten(rng: Rng, low: float, high: float) -> float:
-    """Return a number whose decimal logarithm is uniform between two."""
-    return float(10.0 ** rng.uniform(low, high))
-
-
 def _length(rng: Rng) -> float:
-    return power_of_ten(rng, -10.0, 0.0)
+    return decades(rng, -10.0, 0.0)
 
 
 def _slope(rng: Rng) -> float:
-    return power_of_ten(rng, -4.0, 2.0)
+    return decades(rng, -4.0, 2.0)
 
 
 def _exponent(rng: Rng) -> float:
     """Return an exponent; half of them are near 1/2, where contacts are most sensitive."""
-    return 0.5 + power_of_ten(rng, -2.0, 0.0 if rng.random() < 0.5 else 2.0)
+    return 0.5 + decades(rng, -2.0, 0.0 if rng.random() < 0.5 else 2.0)
 
 
 def _series(rng: Rng) -> Shape:
     """Return a series whose terms are equal within some decades of one width."""
-    width, count = np.float64(power_of_ten(rng, -8.0, -1.0)), int(rng.integers(1, 6))
+    width, count = np.float64(decades(rng, -8.0, -1.0)), int(rng.integers(1, 6))
     exponents = sorted({round(_exponent(rng), 6) if rng.random() < 0.7 else _exponent(rng) for _ in range(count)})
     rise = width * _slope(rng)
-    return rm.PowerSeries({n: float(rise * power_of_ten(rng, -3.0, 3.0) / width**n) for n in exponents})
+    return rm.PowerSeries({n: float(rise * decades(rng, -3.0, 3.0) / width**n) for n in exponents})
 
 
 def _table(rng: Rng) -> Shape:
@@ -72,7 +65,7 @@ def _table(rng: Rng) -> Shape:
     if rng.random() < 0.2:
         f[: int(rng.integers(2, r.size))] = 0.0
     length = _length(rng)
-    return rm.Tabulated(r * length / r[-1], f * length * power_of_ten(rng, -4.0, 0.0))
+    return rm.Tabulated(r * length / r[-1], f * length * decades(rng, -4.0, 0.0))
 
 
 def _mdr_table(rng: Rng) -> Shape:
@@ -84,7 +77,7 @@ def _mdr_table(rng: Rng) -> Shape:
 
 def _capped(rng: Rng) -> Shape:
     radius = _length(rng)
-    return rm.CappedParaboloid(radius, radius * power_of_ten(rng, 0.0, 4.0), _length(rng))
+    return rm.CappedParaboloid(radius, radius * decades(rng, 0.0, 4.0), _length(rng))
 
 
 DRAW: dict[str, Callable[[Rng], Shape]] = {
@@ -163,9 +156,9 @@ class _Subject:
     def random_indentation(self, rng: Rng) -> float:
         """Return one at 1e-12 to 1e3 depths from the end of a branch; without adhesion at a t of 1e-4 to 1e2."""
         if not self.branches:
-            return float(self.depth * self.kernels.reduced_control(power_of_ten(rng, -4.0, 2.0), self.params))
+            return float(self.depth * self.kernels.reduced_control(decades(rng, -4.0, 2.0), self.params))
         depth, branch = self.fold_depth, self.branches[int(rng.integers(len(self.branches)))]
-        distance = depth * power_of_ten(rng, math.log10(NEAREST), -3.0 if rng.random() < 0.5 else 3.0)
+        distance = depth * decades(rng, math.log10(NEAREST), -3.0 if rng.random() < 0.5 else 3.0)
         if branch.highest < mp.inf and rng.random() < 0.5:
             return float(branch.highest - distance)
         return float(branch.lowest + distance)
@@ -232,7 +225,7 @@ def random_error(kind: str, adhesive: bool, seed: int) -> ForceError:
 
 def _draw(rng: Rng, kind: str, adhesive: bool) -> ForceError | None:
     shape = DRAW[kind](rng)
-    subject = _Subject(shape, power_of_ten(rng, 3.0, 13.0), power_of_ten(rng, -9.0, 1.0) if adhesive else 0.0)
+    subject = _Subject(shape, decades(rng, 3.0, 13.0), decades(rng, -9.0, 1.0) if adhesive else 0.0)
     if not subject.solvable:
         return None
     indentation = subject.random_indentation(rng)
@@ -240,7 +233,7 @@ def _draw(rng: Rng, kind: str, adhesive: bool) -> ForceError | None:
         return None
     height = 0.0
     if rng.random() >= 0.5:
-        height = float(rng.normal()) * abs(indentation) * power_of_ten(rng, 0.0, 3.0)
+        height = float(rng.normal()) * abs(indentation) * decades(rng, 0.0, 3.0)
     before = [height, height - _PRESSED * subject.depth] if rng.random() < 0.3 else [height]
     return subject.force_error(height, [*(before if adhesive else []), height - indentation])
 
@@ -256,34 +249,32 @@ def groups(count: int) -> list[Group]:
     return found
 
 
-def errors_of(group: Group) -> list[tuple[float, float, float]]:
-    """Return the numbers of ``_COLUMNS`` of each asperity of a group."""
+def errors_of(group: Group) -> list[dict[str, Any]]:
+    """Return the numbers of ``_COLUMNS`` of each asperity of a group, with its labels."""
     kind, adhesive, seeds = group
-    found = [random_error(kind, adhesive, seed) for seed in seeds]
-    return [(abs(one.error / one.force), abs(one.stated / one.force), one.distance) for one in found]
+    rows = []
+    for seed in seeds:
+        one = random_error(kind, adhesive, seed)
+        errors = {"true_error": abs(one.error / one.force), "stated_error": abs(one.stated / one.force)}
+        labels = {"shape": kind, "adhesion": "JKR" if adhesive else "none", "seed": seed}
+        rows.append(labels | errors | {"distance": one.distance})
+    return rows
 
 
 def measure(quick: bool) -> xr.Dataset:
     """Return the errors of all asperities, from two processes."""
-    asked = groups(QUICK if quick else ASPERITIES)
-    rows = [row for part in in_two_processes(errors_of, asked) for row in part]
-    labels = zip(*((kind, int(adhesive), seed) for kind, adhesive, seeds in asked for seed in seeds), strict=True)
-    columns = {name: ("asperity", list(each), {"long_name": words})
-               for (name, words), each in zip(_LABELS.items(), labels, strict=True)}  # fmt: skip
-    return xr.Dataset(in_cases(_COLUMNS, rows, "asperity") | columns)
+    found = in_two_processes(errors_of, groups(QUICK if quick else ASPERITIES))
+    return of_rows(_COLUMNS, [row for part in found for row in part], "asperity")
 
 
 def report(result: xr.Dataset) -> str:
     """Return how many are within the bound, and how near the worst of each shape comes to it."""
-    excess, stated = (result.true_error / result.stated_error).to_numpy(), result.stated_error.to_numpy()
-    rows = []
-    for kind in SHAPES:
-        for adhesive, model in enumerate(_MODELS):
-            chosen = np.flatnonzero((result["shape"] == kind) & (result.adhesive == adhesive))
-            worst = chosen[np.argmax(excess[chosen])]
-            cells = [f"{excess[worst]:.2g}", f"{float(result.distance[worst]):.1g}", f"{int(result.seed[worst])}"]
-            quantiles = [f"{value:.1g}" for value in np.quantile(stated[chosen], [0.5, 0.99])]
-            rows.append([kind, model, f"{chosen.size}", *cells, *quantiles])
+    excess, rows = result.true_error / result.stated_error, []
+    for labels, own in groups_of(result.assign(excess=excess), "shape", "adhesion"):
+        worst = own.isel(asperity=int(np.argmax(own.excess.to_numpy())))
+        cells = [f"{float(worst.excess):.2g}", f"{float(worst.distance):.1g}", f"{int(worst.seed)}"]
+        quantiles = [f"{value:.1g}" for value in np.quantile(own.stated_error, [0.5, 0.99])]
+        rows.append([*labels, f"{own.sizes['asperity']}", *cells, *quantiles])
     head = ["shape", "adhesion", "asperities", "true/stated: largest", "at", "number", "stated: median", "99 %"]
     return f"Outside the bound: {int((excess > 1.0).sum())} of {excess.size} asperities.\n\n{table(head, rows)}"
 

@@ -12,7 +12,7 @@ import xarray as xr
 
 import roughmdr as rm
 from roughmdr.numerics.arguments import Floats
-from studies.comparison import HELD, PAIRS, cases_of, draw_stated, held, in_cases, law_of, panels, percent
+from studies.comparison import HELD, INTERACTIONS, draw_stated, groups_of, held, law_of, of_rows, panels, percent
 from studies.hills.maps import MapCase
 from studies.study import Figure, Study, in_two_processes, table, without_limits
 from studies.surfaces import Surface, surface_of
@@ -27,7 +27,6 @@ SURFACES = {False: 45, True: 3}  # number of surfaces in full and in reduced for
 _LOADS = {"pressed": (0.25, np.inf), "no load": (-0.25, 0.25), "tension": (-np.inf, -0.25)}
 """Least and largest load over the largest tension."""
 _POINTS = {False: 384, True: 96}
-_MODELS: dict[str, Any] = {"independent": None, "mean field": "mean_field", "order 1": PAIRS[1], "order 2": PAIRS[2]}
 _CONTROLS = ("separation", "pressure", "contact_fraction")
 QUANTITIES = ("pressure", "contact_fraction", "stiffness", "conductance_radius", "contact_radius_sum", "separation")
 ASKED = [(quantity, control) for control in _CONTROLS for quantity in QUANTITIES if quantity != control]
@@ -121,7 +120,7 @@ def compare(task: tuple[int, int, int]) -> list[dict[str, Any]]:
     separation, rows = separations_of(surface), []
     truth, unknown = truth_of(surface, separation)
     for group, ensemble in surface.ensembles.items():
-        for model, interaction in _MODELS.items():
+        for model, interaction in INTERACTIONS.items():
             alone = interaction in (None, "mean_field")
             if (group == "hills" and model != "order 2") or (alone and not surface.periodic):
                 continue
@@ -203,35 +202,30 @@ def measure(quick: bool) -> xr.Dataset:
 
 def dataset_of(rows: list[dict[str, Any]]) -> xr.Dataset:
     """Return the errors of all cases."""
-    labels = {name: ("case", [row[name] for row in rows]) for name in ("group", "model", "surface")}
     asked = [f"{quantity} at given {control}" for quantity, control in ASKED]
-    return xr.Dataset(in_cases(WORDS, rows, "case", "asked", "step"), {**labels, "asked": asked})
+    return of_rows(WORDS, rows, "case", "asked", "step").assign_coords(asked=asked)
 
 
 def draw(result: xr.Dataset) -> Figure:
     """Draw stated over true errors of quantities at given pressure."""
-    asked = [f"{quantity} at given pressure" for quantity in ("contact_fraction", "stiffness", "separation")]
+    quantities = ("contact_fraction", "stiffness", "separation")
     groups = result["group"].values
-    figure, row = panels(16, 4.8, len(asked))
-    for panel, name in zip(row, asked, strict=True):
-        one = result.sel(asked=name)
+    figure, row = panels(16, 4.8, len(quantities))
+    for panel, quantity in zip(row, quantities, strict=True):
+        one = result.sel(asked=f"{quantity} at given pressure")
         error = np.maximum(np.abs(one["error"].to_numpy()), one["unknown"].to_numpy())
         own = {name: np.broadcast_to((groups == name)[:, None], error.shape) for name in dict.fromkeys(groups)}
         draw_stated(panel, error, one["stated"].to_numpy(), own)
-        panel.set(title=name.replace("_", " "), xlabel="true error, or that of boundary elements (relative)")
-        if (legend := panel.get_legend()) is not None:
-            legend.remove()
-    figure.legend(*row[0].get_legend_handles_labels(), loc="outside right center", fontsize=9)
+        panel.set(title=quantity.replace("_", " "), xlabel="true error, or that of boundary elements (relative)")
     return figure
 
 
 def report(result: xr.Dataset) -> str:
     """Return by method and by what is asked how large errors are, and how the stated ones do."""
     rows = []
-    methods = dict.fromkeys(zip(result["group"].values.tolist(), result["model"].values.tolist(), strict=True))
-    for group, model in methods:
+    for (group, model), own in groups_of(result, "group", "model"):
         for name in result["asked"].values:
-            one = cases_of(result, group=group, model=model).sel(asked=name)
+            one = own.sel(asked=name)
             error, stated, unknown = (one[each].to_numpy() for each in ("error", "stated", "unknown"))
             known = np.isfinite(error) & np.isfinite(stated)
             if known.any():

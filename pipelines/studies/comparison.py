@@ -1,6 +1,6 @@
 """Our law beside another solution: laws along paths, numbers of all cases, errors, and how often a stated one holds."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -43,6 +43,12 @@ def in_cases(words: Mapping[str, tuple[str, str]], cases: Sequence[Any], *dims: 
     return {name: (dims, _padded([case[name] for case in found]), named(*words[name])) for name in words}
 
 
+def of_rows(words: Mapping[str, tuple[str, str]], rows: Sequence[Mapping[str, Any]], *dims: str) -> xr.Dataset:
+    """Return the numbers of all cases by their words and units, and whatever else a row holds as labels of its case."""
+    labels = [name for name in rows[0] if name not in words]
+    return xr.Dataset(in_cases(words, rows, *dims), {name: (dims[0], [row[name] for row in rows]) for name in labels})
+
+
 def _padded(rows: list[Any]) -> Floats:
     arrays = [np.asarray(row, dtype=float) for row in rows]
     found = np.full((len(arrays), *np.max([each.shape for each in arrays], axis=0).astype(int)), np.nan)
@@ -57,6 +63,12 @@ def cases_of(result: xr.Dataset, **labels: Any) -> xr.Dataset:
     chosen = np.all([result[name].to_numpy() == label for name, label in labels.items()], axis=0)
     (dim,) = result[next(iter(labels))].dims
     return result.isel({dim: np.flatnonzero(chosen)})
+
+
+def groups_of(result: xr.Dataset, *names: str) -> Iterator[tuple[tuple[Any, ...], xr.Dataset]]:
+    """Yield the labels under these names that occur together, in their order, with the cases that have them."""
+    for labels in dict.fromkeys(zip(*(result[name].values.tolist() for name in names), strict=True)):
+        yield labels, cases_of(result, **dict(zip(names, labels, strict=True)))
 
 
 def rms(values: xr.DataArray | Floats) -> float:
@@ -110,3 +122,15 @@ def draw_stated(panel: Axes, true: Floats, stated: Floats, groups: Mapping[str, 
         panel.plot(true[known & own], stated[known & own], "o", ms=5, mec="w", mew=0.4, label=label)
     panel.set(xlabel="true error of the force (relative)", ylabel="error that is stated")
     panel.legend(fontsize=9)
+
+
+def draw_outcomes(panel: Axes, result: xr.Dataset, label: str, colours: Mapping[str, str]) -> None:
+    """Draw a bar for each value of a label, of how many cases have which ``outcome``, each in its colour."""
+    names, kinds = np.unique(result[label].values, return_inverse=True)
+    before = np.zeros(names.size)
+    for outcome, colour in colours.items():
+        own = np.bincount(kinds[result["outcome"].values == outcome], minlength=names.size)
+        panel.barh([name.replace("_", " ") for name in names], own, left=before, color=colour, label=outcome)
+        before += own
+    panel.invert_yaxis()
+    panel.set_xlabel("scenes")

@@ -16,16 +16,22 @@ from typing import Any, NamedTuple
 import numpy as np
 import tomli_w
 import xarray as xr
-from click.testing import CliRunner
+from click.testing import CliRunner, Result
 
 from roughmdr.cli import main
-from studies.study import Figure, Study, blank
+from studies.comparison import draw_outcomes, of_rows, panels
+from studies.study import Figure, Study
 
 COUNT, QUICK_COUNT = 300, 40
 KINDS = ("unit", "sign", "reversed path", "missing counter body")
 OUTCOMES = ("done", "done, with a warning", "some runs failed", "refused")
 _FACTORS = (1e-6, 1e-3, 1e3, 1e6)
-_FRACTION = "largest_contact_fraction"
+_WORDS = {
+    "exit_status": ("exit status of the run", "1"),
+    "trusted": ("1 where the run, if it ended well, and its plan said how far the force can be trusted", "1"),
+    "contact_fraction": ("largest contact fraction", "1"),
+    "model_error": ("largest model error", "1"),
+}
 _BASES: tuple[dict[str, Any], ...] = (
     {
         "material": {"modulus": 3e6, "poisson": 0.49},
@@ -101,44 +107,40 @@ def _numbers(table: dict[str, Any]) -> Iterator[tuple[dict[str, Any], str]]:
             yield table, key
 
 
-class Outcome(NamedTuple):
-    """The end of a run from the command line."""
-
-    exit_status: int
-    outcome: str
-    trusted: bool  # whether the run, if it ended well, and its plan said how far the force can be trusted
-    contact_fraction: float
-    model_error: float
-
-
-def spring(trap: Trap, folder: Path) -> Outcome:
-    """Plan and run the scene of a trap in a folder."""
+def said_and_found(scene: dict[str, Any], folder: Path) -> tuple[Result, xr.Dataset | None]:
+    """Run a scene by the command line in a folder; return what it said, and its result if it ended well."""
     file, out = folder / "scene.toml", folder / "out.nc"
-    file.write_text(tomli_w.dumps(trap.scene))
-    command = CliRunner()
-    plan = command.invoke(main, ["plan", str(file)])
-    run = command.invoke(main, ["run", str(file), "-o", str(out), "--fresh"])
+    file.write_text(tomli_w.dumps(scene))
+    done = CliRunner().invoke(main, ["run", str(file), "-o", str(out), "--fresh"])
+    if done.exit_code:
+        return done, None
+    with xr.open_dataset(out) as stored:
+        return done, stored.load()
+
+
+def spring(trap: Trap, folder: Path) -> dict[str, Any]:
+    """Run and plan the scene of a trap in a folder: return how it ended, and the numbers of ``_WORDS``."""
+    run, result = said_and_found(trap.scene, folder)
     if run.exit_code not in (0, 1, 2):
         raise AssertionError(f"exit status {run.exit_code}: {trap.scene}")
-    fraction = error = np.nan
-    if run.exit_code == 0:
-        with xr.open_dataset(out) as result:
-            fraction, error = float(result[_FRACTION].max()), float(result.model_error.max())
-    warned = bool(re.search(r"^warning ", run.stdout, re.MULTILINE))
-    outcome = {0: OUTCOMES[int(warned)], 1: OUTCOMES[2], 2: OUTCOMES[3]}[run.exit_code]
+    plan = CliRunner().invoke(main, ["plan", str(folder / "scene.toml")])
     texts = [text.stdout for text in (plan, run) if text.exit_code == 0]
-    trusted = all(re.search(r"^trust ", text, re.MULTILINE) for text in texts)
-    return Outcome(run.exit_code, outcome, trusted, fraction, error)
+    warned = bool(re.search(r"^warning ", run.stdout, re.MULTILINE))
+    return {
+        "kind": trap.kind,
+        "outcome": {0: OUTCOMES[int(warned)], 1: OUTCOMES[2], 2: OUTCOMES[3]}[run.exit_code],
+        "exit_status": run.exit_code,
+        "trusted": all(re.search(r"^trust ", text, re.MULTILINE) for text in texts),
+        "contact_fraction": np.nan if result is None else result["largest_contact_fraction"].max(),
+        "model_error": np.nan if result is None else result["model_error"].max(),
+    }
 
 
 def measure(quick: bool) -> xr.Dataset:
     """Plan and run all traps."""
     count = QUICK_COUNT if quick else COUNT
     with tempfile.TemporaryDirectory() as name, chdir(name):
-        found = [(trap.kind, *spring(trap, Path(os.curdir).resolve())) for trap in traps(count)]
-    columns = zip(("kind", *Outcome._fields), zip(*found, strict=True), strict=True)
-    result = xr.Dataset({name: ("trap", np.array(column)) for name, column in columns})
-    return result.assign(trusted=result.trusted.astype(np.int8))
+        return of_rows(_WORDS, [spring(trap, Path(os.curdir).resolve()) for trap in traps(count)], "trap")
 
 
 def violations(found: xr.Dataset) -> tuple[int, int]:
@@ -149,16 +151,9 @@ def violations(found: xr.Dataset) -> tuple[int, int]:
 
 def draw(found: xr.Dataset) -> Figure:
     """Draw how the traps of each kind end."""
-    figure = blank(8.0, 3.0)
-    axes = figure.subplots()
-    left = np.zeros(len(KINDS))
-    for outcome, colour in zip(OUTCOMES, ("tab:blue", "tab:orange", "tab:red", "0.7"), strict=True):
-        counts = np.array([int(((found.kind == kind) & (found.outcome == outcome)).sum()) for kind in KINDS])
-        axes.barh(KINDS, counts, left=left, color=colour, label=outcome)
-        left += counts
-    axes.invert_yaxis()
-    axes.set_xlabel("scenes")
-    axes.legend(frameon=False, fontsize="small")
+    figure, (panel,) = panels(8.0, 3.0, 1)
+    draw_outcomes(panel, found, "kind", dict(zip(OUTCOMES, ("tab:blue", "tab:orange", "tab:red", "0.7"), strict=True)))
+    panel.legend(frameon=False, fontsize="small")
     return figure
 
 

@@ -12,8 +12,8 @@ import scipy.stats
 from forms import large
 from hypothesis import given, settings, strategies as st
 from mpmath import mp, mpf
-from oracles.quantile_means import mean_of_correlated, mean_of_heights, mean_of_radii
-from studies.all_distributions import Scene, draw, families, judge
+from twins.all_distributions import Scene, draw, families, judge
+from twins.quantile_means import mean_of_correlated, mean_of_heights, mean_of_radii
 
 import roughmdr as rm
 from roughmdr.ensemble.random.distribution import Distribution

@@ -6,27 +6,28 @@ as small as it can be, and raised as TOML.
 """
 
 import tempfile
-import time
 from collections import Counter
 from functools import partial
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+import tomli_w
 import xarray as xr
 from hypothesis import HealthCheck, Phase, given, seed, settings
 
 from roughmdr.shapes import SCENE_SHAPES
-from studies.random_scenes.judge import OUTCOMES, judge
+from studies.comparison import draw_outcomes, of_rows, panels
+from studies.random_scenes.judge import OUTCOMES, Defect, judge
 from studies.random_scenes.scenes import scenes, write_inputs
-from studies.study import Figure, Study, blank, in_two_processes, named, table
+from studies.study import Figure, Study, in_two_processes, timed
 
 SEEDS = (2026, 2027)  # one for each process
 FULL, QUICK = 10_000, 300  # scenes in all
 QUICK_COHESIVE = ("paraboloid", "flat_punch")  # other shapes take long to compile with adhesion of finite range
 KINDS = ("shape", "adhesion", "source", "estimator")
 _COLOURS = ("#1b6ca8", "#e0a030", "#b8bcc2")
-_LISTED = 12  # reasons in the table
+_WORDS = {"comparisons": ("claims about numbers that held", "1"), "run_time": ("run time of a scene", "s")}
 
 
 def kind_of(scene: dict[str, Any]) -> tuple[str, ...]:
@@ -37,7 +38,7 @@ def kind_of(scene: dict[str, Any]) -> tuple[str, ...]:
     return shape, scene.get("adhesion", {"model": "none"})["model"], section["source"], estimator
 
 
-def search(start: int, count: int, folder: Path, cohesive: tuple[str, ...]) -> list[tuple[Any, ...]]:
+def search(start: int, count: int, folder: Path, cohesive: tuple[str, ...]) -> list[dict[str, Any]]:
     """Judge ``count`` scenes: return kind, verdict and run time [s] of each.
 
     Raise Defect, with the smallest scene that shows it, where one is not right.
@@ -49,9 +50,12 @@ def search(start: int, count: int, folder: Path, cohesive: tuple[str, ...]) -> l
     @settings(max_examples=count, deadline=None, database=None, phases=phases, suppress_health_check=no_checks)
     @given(scenes(folder, cohesive))
     def judged(scene: dict[str, Any]) -> None:
-        started = time.perf_counter()
-        verdict = judge(scene)
-        records.append((*kind_of(scene), *verdict, time.perf_counter() - started))
+        try:
+            verdict, seconds = timed(partial(judge, scene))
+        except Defect as defect:
+            defect.add_note(tomli_w.dumps(scene))
+            raise
+        records.append(dict(zip(KINDS, kind_of(scene), strict=True)) | verdict._asdict() | {"run_time": seconds})
 
     judged()
     return records
@@ -63,56 +67,28 @@ def measure(quick: bool) -> xr.Dataset:
     with tempfile.TemporaryDirectory() as folder:
         write_inputs(Path(folder))
         search_part = partial(search, count=each, folder=Path(folder), cohesive=cohesive)
-        records = [record for part in in_two_processes(search_part, SEEDS) for record in part]
-    *words, comparisons, seconds = ([*column] for column in zip(*records, strict=True))
-    return xr.Dataset(
-        {
-            "comparisons": ("scene", comparisons, named("claims about numbers that held")),
-            "run_time": ("scene", seconds, named("run time of a scene", "s")),
-        },
-        {name: ("scene", column) for name, column in zip((*KINDS, "outcome", "reason"), words, strict=True)},
-    )
+        return of_rows(_WORDS, [record for part in in_two_processes(search_part, SEEDS) for record in part], "scene")
 
 
 def draw(result: xr.Dataset) -> Figure:
     """Draw a bar of outcomes for each shape of the asperities, adhesion, source and estimator."""
-    figure = blank(12.5, 6.2)
-    panels = figure.subplot_mosaic([["shape", kind] for kind in KINDS[1:]])
-    for kind, panel in panels.items():
-        names = np.unique(result[kind])
-        before = np.zeros(names.size)
-        for outcome, colour in zip(OUTCOMES, _COLOURS, strict=True):
-            counts = Counter(result[kind].values[result.outcome == outcome])
-            own = np.array([counts[name] for name in names])
-            panel.barh([name.replace("_", " ") for name in names], own, left=before, color=colour, label=outcome)
-            before += own
-        panel.invert_yaxis()
-        panel.set(title=kind, xlabel="scenes")
-        panel.grid(axis="x", color="0.92")
-        panel.set_axisbelow(True)
-    panels["shape"].legend(loc="lower right", fontsize=9)
+    figure, row = panels(14, 4.5, len(KINDS))
+    for kind, panel in zip(KINDS, row, strict=True):
+        draw_outcomes(panel, result, kind, dict(zip(OUTCOMES, _COLOURS, strict=True)))
+        panel.set_title(kind)
+    row[0].legend(loc="lower right", fontsize=9)
     return figure
 
 
 def report(result: xr.Dataset) -> str:
-    """Return how many scenes there were, what became of them, and why those were refused that were."""
+    """Return how many scenes there were, and what became of them."""
     count, found = result.sizes["scene"], Counter(result.outcome.values)
     outcomes = ", ".join(f"{found[name]} ({100.0 * found[name] / count:.1f} %) {name}" for name in OUTCOMES)
     median, nearly_all, longest = np.quantile(result.run_time, (0.5, 0.99, 1.0))
-    reasons = [[f"{n}", f"{why}"] for why, n in Counter(result.reason.values).most_common() if why]
     return f"""
 {count} scenes drawn over all that a scene may ask for: {outcomes}. In none of them was there a NaN, an infinite number,
-or an exception that is no refusal, and {int(result.comparisons.sum())} claims about their numbers all held: without
-adhesion force, area, count and stiffness grow as the flat comes down and have no memory, and the force lies between the
-lines that the stiffness draws; with it contacts grow as the flat comes down and shrink as it rises, those that were
-pressed deeper before are larger and pull more, nothing lost comes back, and more work of adhesion means larger contacts
-and less force. Forces may be off by their stated error, other sums by 1e-12 of the largest; expected curves by their
-error.
+or an exception that is no refusal, and {int(result.comparisons.sum())} claims about their numbers all held.
 Half of the scenes take up to {1e3 * median:.0f} ms, 99 % up to {nearly_all:.1g} s, one {longest:.1f} s.
-
-The most frequent of {len(reasons)} reasons to refuse a scene or a run, without their numbers:
-
-{table(["scenes", "reason"], reasons[:_LISTED])}
 """
 
 

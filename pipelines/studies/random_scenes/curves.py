@@ -7,9 +7,9 @@ import numpy as np
 import xarray as xr
 
 from roughmdr.numerics.arguments import Floats
+from roughmdr.result.view import ResultView
 from roughmdr.scene import Scene
 
-DONE, _EXPECTED = 0, 2
 ROUNDING = 1e-12  # relative rounding of a sum, to which the kernels are tested
 FORCES = ("force", "pressure")
 
@@ -42,27 +42,25 @@ class Curves(NamedTuple):
 
 def curves_of(result: xr.Dataset, scene: Scene) -> Iterator[Curves]:
     """Yield the curves of each cell, in the order of the cells."""
-    sizes = scene.sweep.sizes
-    separation = result.variables["separation"]
-    over = [result.sizes[name] if name in separation.dims else 1 for name in (*sizes, "step")]
-    path = np.broadcast_to(separation.values.reshape(over), (*sizes.values(), result.sizes["step"]))
-    names = scene.output.variables
-    for index, cell in zip(np.ndindex(*sizes.values()), scene.cells, strict=True):
+    view = ResultView(result)
+    path = view.over_steps("separation")
+    for index, cell in zip(view.cells, scene.cells, strict=True):
 
         def values(name: str, index: tuple[int, ...] = index) -> Floats:
-            return np.asarray(result.variables[name].values[index])
+            return np.asarray(view.variables[name].values[index])
 
-        expected = cell.batch.estimator == "expected"
-        if "accuracy_method" in result:
-            expected = int(values("accuracy_method")) == _EXPECTED
-        error, done = values("numerical_error"), values("status") == DONE
-        if scene.output.keep == "curves":
-            curves, error = {name: values(name)[done] for name in names}, error[done]
+        expected = (view.method(index) or cell.batch.estimator) == "expected"
+        error, done = values("numerical_error"), view.done[index]
+        if view.keeps_runs:
+            curves, error = {name: values(name)[done] for name in scene.output.variables}, error[done]
         else:
             rows = ("mean", "min", "max") if done else ()
-            error, steps = np.repeat(error, len(rows)), result.sizes["step"]
-            curves = {name: np.array([values(f"{name}_{row}") for row in rows]).reshape(-1, steps) for name in names}
-        yield Curves(cell, path[index], curves, error, not expected and scene.output.keep == "curves", expected)
+            error, shape = np.repeat(error, len(rows)), (len(rows), path.shape[-1])
+            curves = {
+                name: np.array([values(f"{name}_{row}") for row in rows]).reshape(shape)
+                for name in scene.output.variables
+            }
+        yield Curves(cell, path[index], curves, error, not expected and view.keeps_runs, expected)
 
 
 def returns(separation: Floats) -> list[tuple[int, int]]:

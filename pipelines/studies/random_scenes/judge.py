@@ -1,14 +1,12 @@
 """Judge any scene: it is refused in words, or its numbers are finite and physically right."""
 
 import math
-import re
 import warnings
 from collections.abc import Iterator
 from itertools import pairwise
 from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
-import tomli_w
 import xarray as xr
 from numpy.typing import NDArray
 
@@ -17,15 +15,15 @@ from roughmdr import errors
 from roughmdr.errors import FailedRuns, LimitWarning, RoughmdrError, Unfinished
 from roughmdr.scene import Scene, read
 from roughmdr.stages.viscoelastic import Viscoelastic
-from studies.random_scenes.curves import DONE, FORCES, ROUNDING, Curves, curves_of, returns
+from roughmdr.variables import DONE
+from studies.random_scenes.curves import FORCES, ROUNDING, Curves, curves_of, returns
 
 COMPUTED, FAILED, REFUSED = OUTCOMES = ("computed", "a run failed", "refused")
 _CONDUCTION = ("conductance_radius", "thermal_conductance", "electrical_conductance")
 _CONTACTS = ("contact_count", "contact_area", "contact_radius_sum", "contact_fraction", *_CONDUCTION)
-_FOLDERS = re.compile(r"/\S*/|\bscene: ")
-_NUMBERS = re.compile(r"[-+]?\d[\w.+-]*|'[^']*'|\([^)]*\)")
 
-Claims: TypeAlias = Iterator[tuple[str, NDArray[np.bool_] | bool]]
+Bools: TypeAlias = NDArray[np.bool_]
+Claims: TypeAlias = Iterator[tuple[str, Bools | bool]]
 """Claims about numbers, in words, and where they hold."""
 
 
@@ -37,20 +35,12 @@ class Verdict(NamedTuple):
     """The outcome of a scene."""
 
     outcome: str
-    reason: str = ""
+    reason: str = ""  # why it was refused, or a run failed
     comparisons: int = 0  # how many pairs of numbers were compared
 
 
 def judge(table: dict[str, Any]) -> Verdict:
-    """Run a scene in memory and check its result; raise Defect, with the scene in TOML, where that is wrong."""
-    try:
-        return _judged(table)
-    except Defect as defect:
-        defect.add_note(tomli_w.dumps(table))
-        raise
-
-
-def _judged(table: dict[str, Any]) -> Verdict:
+    """Run a scene in memory and check its result; raise Defect where that is wrong."""
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("error")
@@ -61,18 +51,13 @@ def _judged(table: dict[str, Any]) -> Verdict:
     except Exception as error:
         message = f"{type(error).__name__}: {error}"
         if isinstance(error, RoughmdrError) and not isinstance(error, Unfinished):
-            return Verdict(REFUSED, reason_of(message))
+            return Verdict(REFUSED, message)
         raise Defect(f"an unhandled {message}") from error
     comparisons = check(result, scene)
     failed = result.status.to_numpy() == 1
     if failed.any():
-        return Verdict(FAILED, reason_of(str(result.remark.to_numpy()[failed][0])), comparisons)
+        return Verdict(FAILED, str(result.remark.to_numpy()[failed][0]), comparisons)
     return Verdict(COMPUTED, comparisons=comparisons)
-
-
-def reason_of(message: str) -> str:
-    """Return a refusal without its numbers, so that those of one kind can be counted."""
-    return _NUMBERS.sub("#", _FOLDERS.sub("", message.partition("\n")[0]))[:120]
 
 
 def check(result: xr.Dataset, scene: Scene) -> int:
@@ -176,43 +161,44 @@ def _claims_without_adhesion(curves: Curves) -> Claims:
         yield "stiffness is 2 E* times the sum of the radii", np.abs(values["stiffness"] - exact) <= slack
 
 
-def _claims_on_contacts(curves: Curves) -> Claims:
-    """Contacts grow on loading and shrink on unloading."""
-    move = np.diff(curves.separation)
-    for name, each, tolerance in curves.given(*_CONTACTS):
-        rises, slack = np.diff(each, axis=1), 2.0 * tolerance
-        yield f"{name} does not fall as the flat comes down", rises[:, move <= 0.0] >= -slack
-        yield f"{name} does not rise as the flat does", rises[:, move >= 0.0] <= slack
+def _claims_on_moves(curves: Curves, names: tuple[str, ...], falls: Bools, rises: Bools) -> Claims:
+    """Variables do not fall where the flat comes down, nor rise where it goes up: in these masks of all moves."""
+    for name, each, tolerance in curves.given(*names):
+        change, slack = np.diff(each, axis=1), 2.0 * tolerance
+        yield f"{name} does not fall as the flat comes down", change[:, falls] >= -slack
+        yield f"{name} does not rise as the flat does", change[:, rises] <= slack
+
+
+def _claims_on_returns(curves: Curves, names: tuple[str, ...], sign: float) -> Claims:
+    """Variables, times a sign, have not become less after the flat was lower than at both of two steps."""
+    for before, after in returns(curves.separation):
+        for name, each, tolerance in curves.given(*names):
+            gain = sign * (each[:, after] - each[:, before])
+            yield f"{name} after the flat was lower, against before", gain >= -2.0 * tolerance[:, 0]
 
 
 def _claims_with_adhesion(curves: Curves) -> Claims:
     """After deeper loading contacts are larger and pull more, and nothing lost comes back."""
-    yield from _claims_on_contacts(curves)
-    values = curves.values
+    values, move = curves.values, np.diff(curves.separation)
+    yield from _claims_on_moves(curves, _CONTACTS, move <= 0.0, move >= 0.0)
     if {"dissipated_energy", "energy", "force"} <= values.keys():
         # A loss is a difference of energies, and no more accurate than they are.
         lost, stored, force = (values[name] for name in ("dissipated_energy", "energy", "force"))
         whole = np.abs(stored).max(axis=1) + np.abs(force).max(axis=1) * np.ptp(curves.separation)
         slack = 2.0 * curves.tolerance("dissipated_energy") + ROUNDING * whole[:, None]
         yield "what is lost is lost", np.diff(lost, axis=1, prepend=0.0) >= -slack
-    for before, after in returns(curves.separation):
-        for name, each, tolerance in curves.given(*_CONTACTS, *FORCES):
-            gain = (each[:, after] - each[:, before]) * (-1.0 if name in FORCES else 1.0)
-            yield f"{name} after the flat was lower, against before", gain >= -2.0 * tolerance[:, 0]
+    yield from _claims_on_returns(curves, _CONTACTS, 1.0)
+    yield from _claims_on_returns(curves, FORCES, -1.0)
 
 
 def _claims_with_relaxation(curves: Curves) -> Claims:
     """On unloading contacts are smaller and bear less; nothing pulls."""
-    yield from _claims_on_contacts(curves)
-    move = np.diff(curves.separation)
     for name, each, tolerance in curves.given(*FORCES):
         yield f"{name} is not negative", each >= -tolerance
-        rises = np.diff(each, axis=1)
-        yield f"{name} does not fall as the flat comes down", rises[:, move < 0.0] >= -2.0 * tolerance
-        yield f"{name} does not rise as the flat stands or rises", rises[:, move >= 0.0] <= 2.0 * tolerance
-    for before, after in returns(curves.separation):
-        for name, each, tolerance in curves.given(*_CONTACTS, *FORCES):
-            yield f"{name} after loading, against before", each[:, after] <= each[:, before] + 2.0 * tolerance[:, 0]
+    move = np.diff(curves.separation)
+    yield from _claims_on_moves(curves, _CONTACTS, move <= 0.0, move >= 0.0)
+    yield from _claims_on_moves(curves, FORCES, move < 0.0, move >= 0.0)
+    yield from _claims_on_returns(curves, (*_CONTACTS, *FORCES), -1.0)
 
 
 def _claims_over_work(scene: Scene, cells: list[Curves]) -> Claims:

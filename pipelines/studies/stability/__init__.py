@@ -9,9 +9,9 @@ crowds of asperities that feel each other.
 
 import cProfile
 import math
+import operator
 from collections import Counter
-from concurrent.futures import ProcessPoolExecutor
-from multiprocessing import get_context
+from functools import partial
 from typing import Any, Literal
 
 import numpy as np
@@ -23,41 +23,41 @@ from roughmdr.asperity.contact import Contact
 from roughmdr.kernels.adhesion import Adhesion
 from roughmdr.kernels.closed import jkr_power
 from roughmdr.kernels.dugdale import equilibrium
+from roughmdr.numerics.arguments import Floats
+from studies.comparison import groups_of
 from studies.stability.cases import AXES, Case, design
-from studies.stability.crowding import Steps, crowded, crowds
+from studies.stability.crowding import crowded, crowds
 from studies.stability.judge import MODELS, OUTCOMES, REFUSED, WRONG, Verdict, verdicts
 from studies.stability.metamorphic import KINDS, QUICK as QUICK_KINDS, checks
-from studies.study import Axes, Figure, Study, blank, named, table
+from studies.study import Axes, Figure, Study, blank, in_two_processes, named, table
 
 FULL, QUICK = {"elastic": 512, "jkr": 512, "dugdale": 128}, {"elastic": 16, "jkr": 16, "dugdale": 4}
 """Number of cases for each model, from the beginning of one sequence."""
 COUNTED, COUNTED_QUICKLY = 128, 16  # number of cases for each model with adhesion in which equilibria are counted
 EQUILIBRIUM: dict[Literal["jkr", "dugdale"], Any] = {"jkr": jkr_power._distance, "dugdale": equilibrium.state_along}
 """The kernel that evaluates an equilibrium, by adhesion model."""
-WORKERS = 2
 CELLS = 8  # along an axis
 _COLORS = {"right": "#1b6ca8", "refused": "#b8b8b8", "wrong": "#ff00c8"}
-_CELLS: dict[str, Any] = {"origin": "lower", "aspect": "auto"}
+_LEAST = 1e-2  # least error over what is allowed that the colours tell apart
 
 
 def measure(quick: bool) -> xr.Dataset:
     """Return all numbers of the study."""
     counts = QUICK if quick else FULL
     cases = design(max(counts.values()))
-    models = [[model for model in MODELS if number < counts[model]] for number in range(len(cases))]
-    with ProcessPoolExecutor(WORKERS, mp_context=get_context("spawn")) as pool:
-        changes, crowds = pool.submit(checks, quick), pool.submit(crowded, quick)
-        counted = COUNTED_QUICKLY if quick else COUNTED
-        tried = pool.submit(in_new_process, equilibria_tried, counted, NUMBA_DISABLE_JIT="1")
-        found = list(pool.map(judge_case, cases, models, chunksize=1 if quick else 4))
-    changed = zip(("name", "law", "kind", "error", "allowed"), zip(*changes.result(), strict=True), strict=True)
-    result = of_verdicts(cases, found).assign({f"change_{name}": ("change", list(values)) for name, values in changed})
-    for name, values in zip(Steps._fields, zip(*crowds.result(), strict=True), strict=True):
-        result[f"crowd_{name}"] = ("crowd", list(values))
-    return result.assign(
-        tried=(("counted_case", "counted_law"), tried.result(), named("equilibria evaluated to find a contact")),
-        counted_law=list(EQUILIBRIUM),
-    )
+    jobs = [
+        partial(checks, quick),
+        partial(crowded, quick),
+        partial(in_new_process, equilibria_tried, COUNTED_QUICKLY if quick else COUNTED, NUMBA_DISABLE_JIT="1"),
+        *(partial(judge_case, case, [model for model in MODELS if number < counts[model]])
+          for number, case in enumerate(cases)),
+    ]  # fmt: skip
+    changes, crowds, tried, *found = in_two_processes(operator.call, jobs)
+    tables = {"change": changes, "crowd": crowds}
+    columns = {f"{dim}_{name}": (dim, [row[name] for row in rows]) for dim, rows in tables.items() for name in rows[0]}
+    evaluated = ("counted_case", "counted_law"), tried, named("equilibria evaluated to find a contact")
+    result = of_verdicts(cases, found).assign(columns)
+    return result.assign(tried=evaluated, counted_law=list(EQUILIBRIUM))
 
 
 def judge_case(case: Case, models: list[str]) -> list[list[Verdict]]:
@@ -119,17 +119,16 @@ def report(result: xr.Dataset) -> str:
         outcomes.append([model, *map(str, (cases, *answers)), f"{float(chosen.excess.max()):.2f}"])
     listed = result.sortby("reason_answers", ascending=False)
     reasons = zip(*(listed[f"reason_{name}"].to_numpy() for name in ("law", "answers", "text")), strict=True)
-    evaluated, changes = [], []
+    evaluated = []
     for model in result.counted_law.to_numpy():
         values = result.tried.sel(counted_law=model).dropna("counted_case").to_numpy()
         evaluated.append([model, *(f"{np.quantile(values, part):.0f}" for part in (0.5, 0.99, 1.0))])
-    for name in dict.fromkeys(result.change_name.to_numpy().tolist()):
-        chosen = result.isel(change=np.flatnonzero(result.change_name == name))
+    changes = []
+    for (name,), chosen in groups_of(result, "change_name"):
         numbers = float(chosen.change_error.max()), float(chosen.change_allowed.max())
         changes.append([name, str(chosen.sizes["change"]), *(f"{number:.1e}" if number else "0" for number in numbers)])
     crowded = []
-    for name in dict.fromkeys(result.crowd_name.to_numpy().tolist()):
-        chosen = result.isel(crowd=np.flatnonzero(result.crowd_name == name))
+    for (name,), chosen in groups_of(result, "crowd_name"):
         counted = (str(int(chosen[f"crowd_{each}"].sum())) for each in ("steps", "marked", "without"))
         crowded.append([name, *counted, f"{float(chosen.crowd_excess.max()):.2g}"])
     return "\n\n".join([
@@ -157,6 +156,7 @@ def worst_in(result: xr.Dataset, one: str, other: str, values: Any) -> Any:
 
 def draw(result: xr.Dataset) -> Figure:
     """Draw the worst error below the diagonal, equilibria evaluated above it, on it the outcomes along each axis."""
+    from matplotlib import colormaps
     from matplotlib.cm import ScalarMappable
     from matplotlib.colors import LogNorm
     from matplotlib.patches import Patch
@@ -164,8 +164,9 @@ def draw(result: xr.Dataset) -> Figure:
     names, ends = list(AXES), (-0.5, 0.5 * CELLS - 0.5, CELLS - 0.5)
     figure = blank(15, 13.5)
     panels = figure.subplots(len(names), len(names))
-    excess = LogNorm(1e-2, 1.0)
-    evaluated = LogNorm(1.0, max(2.0, float(np.nanmax(result.tried, initial=2.0))))
+    of_errors = colormaps["YlOrBr"].with_extremes(under=_COLORS["refused"], over=_COLORS["wrong"])
+    errors = ScalarMappable(LogNorm(_LEAST, 1.0), of_errors)
+    evaluated = ScalarMappable(LogNorm(1.0, max(2.0, float(np.nanmax(result.tried, initial=2.0)))), "viridis")
     counted = result.isel(case=slice(0, result.sizes["counted_case"]))
     for (i, j), panel in np.ndenumerate(panels):
         one, other = names[j], names[i]
@@ -173,11 +174,11 @@ def draw(result: xr.Dataset) -> Figure:
         panel.set(xticks=ends, xticklabels=(), yticks=() if i == j else ends, yticklabels=())
         if j == i:
             _draw_outcomes(panel, chosen, one)
-        elif j < i:
-            _draw_errors(panel, chosen, one, other, excess)
         else:
-            most = worst_in(counted, one, other, counted.tried.max("counted_law").to_numpy())
-            panel.imshow(most, cmap="viridis", norm=evaluated, **_CELLS)
+            values = _worst(chosen) if j < i else counted.tried.max("counted_law").to_numpy()
+            shown = errors if j < i else evaluated
+            grid = worst_in(chosen if j < i else counted, one, other, values)
+            panel.imshow(grid, cmap=shown.cmap, norm=shown.norm, origin="lower", aspect="auto")
         if i == len(names) - 1:
             panel.set_xticklabels(_ticks(one), fontsize=8)
             panel.set_xlabel(AXES[one].label)
@@ -185,8 +186,8 @@ def draw(result: xr.Dataset) -> Figure:
             panel.set_yticklabels(_ticks(other), fontsize=8)
             panel.set_ylabel(AXES[other].label)
     below, above = "below: worst error over what is allowed", "above: most equilibria evaluated for a contact"
-    figure.colorbar(ScalarMappable(excess, "YlOrBr"), ax=panels, location="bottom", shrink=0.4, label=below)
-    figure.colorbar(ScalarMappable(evaluated, "viridis"), ax=panels, location="right", shrink=0.4, label=above)
+    figure.colorbar(errors, ax=panels, location="bottom", shrink=0.4, label=below)
+    figure.colorbar(evaluated, ax=panels, location="right", shrink=0.4, label=above)
     handles = [Patch(color=color, label=outcome) for outcome, color in _COLORS.items()]
     figure.legend(handles=handles, loc="outside upper right", ncols=3, title="refused: no float holds it; white: none")
     figure.suptitle("Results over seven axes, without adhesion, with JKR and with Dugdale", x=0.02, ha="left")
@@ -198,16 +199,11 @@ def _ticks(name: str) -> list[str]:
     return [f"{AXES[name].at(part):.3g}" for part in (0.0, 0.5, 1.0)]
 
 
-def _draw_errors(panel: Axes, result: xr.Dataset, one: str, other: str, excess: Any) -> None:
-    """Draw the worst error in each cell; over it where answers are wrong, under it where they are refused."""
-    from matplotlib.colors import ListedColormap
-
-    worst = worst_in(result, one, other, result.excess.max("law").to_numpy())
-    for layer, outcome in enumerate(("refused", "wrong")):
-        answers = result.answers.sum("law").sel(outcome=outcome)
-        grid = worst_in(result, one, other, np.where(answers > 0, 1.0, np.nan))
-        panel.imshow(grid, cmap=ListedColormap([_COLORS[outcome]]), zorder=2 * layer, **_CELLS)
-    panel.imshow(np.maximum(worst, excess.vmin), cmap="YlOrBr", norm=excess, zorder=1, **_CELLS)
+def _worst(result: xr.Dataset) -> Floats:
+    """Return the worst error of each case, above 1 with a wrong answer, next to 0 if all are refused; NaN if none."""
+    answers = result.answers.sum("law")
+    excess = result.excess.max("law").clip(min=_LEAST).fillna(1e-300).where(answers.sum("outcome") > 0)
+    return np.asarray(excess.where(answers.sel(outcome=WRONG) == 0, 2.0))
 
 
 def _draw_outcomes(panel: Axes, result: xr.Dataset, name: str) -> None:

@@ -17,11 +17,11 @@ import roughmdr as rm
 from roughmdr.numerics.arguments import Floats
 from roughmdr.scene import Scene, read
 from roughmdr.shapes import SHAPES
-from studies.comparison import cases_of, draw_stated, in_cases, panels
+from studies.comparison import cases_of, draw_stated, of_rows, panels
 from studies.stated_error.contacts import ContactPath, contact_path
 from studies.stated_error.expected import ORDERS, ExpectedForce
 from studies.stated_error.scenes import ADHESIONS, ESTIMATORS, RandomScene, scene
-from studies.study import Figure, Study, in_two_processes, named, table, without_limits
+from studies.study import Figure, Study, in_two_processes, table, without_limits
 
 SCENES, QUICK = 200, 60
 FINER = 10.0  # how many times more accurate than the stated error a reference is at least
@@ -113,12 +113,13 @@ def measure(quick: bool) -> xr.Dataset:
 
 def as_dataset(drawn: list[RandomScene], judged: list[Judged]) -> xr.Dataset:
     """Return the errors of each scene that was not refused."""
-    computed = [(one, errors) for one, errors in zip(drawn, judged, strict=True) if not errors.refused]
-    words = ("estimator", "adhesion", "shape")
-    labels = {name: ("scene", [getattr(one, name) for one, _ in computed]) for name in words}
-    number = ("scene", [one.number for one, _ in computed], named("number of the scene"))
-    numbers = in_cases(_WORDS, [(*errors[:2], errors.honest) for _, errors in computed], "scene")
-    return xr.Dataset(numbers, {"scene": number, **labels}, {"refused": len(drawn) - len(computed)})
+    rows = [
+        {"scene": one.number, "estimator": one.estimator, "adhesion": one.adhesion, "shape": one.shape}
+        | {"true_error": errors.true, "stated_error": errors.stated, "honest": errors.honest}
+        for one, errors in zip(drawn, judged, strict=True)
+        if not errors.refused
+    ]
+    return of_rows(_WORDS, rows, "scene").assign_attrs(refused=len(drawn) - len(rows))
 
 
 def draw(result: xr.Dataset) -> Figure:

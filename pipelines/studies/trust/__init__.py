@@ -7,33 +7,25 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import tomli_w
 import xarray as xr
-from click.testing import CliRunner
 
 import roughmdr as rm
-from roughmdr.cli import main
 from roughmdr.numerics.arguments import Floats
 from roughmdr.scene import Scene, read
-from studies.comparison import FACTOR, bounds, draw_stated, in_cases, panels
+from studies.comparison import FACTOR, bounds, draw_stated, of_rows, panels
 from studies.study import Figure, Study, table, without_limits
+from studies.traps import said_and_found
 from studies.trust.samples import CASES as SURFACES, measure_samples, report_samples
 from studies.trust.scenes import CASES, QUICK, Case
 from studies.trust.truth import MAPS, by_boundary_elements, by_pairs, by_range_of_adhesion, of_map
-from studies.versus_bem.ensembles import side, write_map
+from studies.versus_bem.ensembles import write_map
 
-_TOLD = ("contact", "model error", "trust", "warning")
 _NAMES = {
     "exit_status": ("exit status of the run", "1"),
     "contact_fraction": ("summed contact area over the nominal area at closest approach", "1"),
     "model_error": ("model error at closest approach", "1"),
-    "separation": ("separation at closest approach", "m"),
     "force": ("force of independent asperities at closest approach", "N"),
-    "pull_off": ("pull-off force of independent asperities", "N"),
     "true_force": ("true force at closest approach, infinite in full contact", "N"),
-    "scatter": ("standard error of the true force, of a mean over maps", "N"),
-    "true_pull_off": ("true pull-off force", "N"),
-    "radius_points": ("r.m.s. contact radius over the spacing of the grid of boundary elements", "1"),
 }
 _ORACLES = {
     "pairs": "asperities that feel each other in pairs",
@@ -45,55 +37,37 @@ _ORACLES = {
 
 def carry_out(case: Case, folder: Path) -> dict[str, Any]:
     """Run a scene in a folder: return the numbers of ``_NAMES``, and what it printed on trust, or why it refused."""
-    file, out = folder / "scene.toml", folder / "out.nc"
-    file.write_text(tomli_w.dumps(case.scene))
     if case.oracle == "map" and case.surface is not None:
         write_map(case.surface.height(), case.surface.size, folder / "map.nc")
-    done = CliRunner().invoke(main, ["run", str(file), "-o", str(out), "--fresh"])
-    found: dict[str, Any] = dict.fromkeys(_NAMES, math.nan) | {"exit_status": done.exit_code}
-    if done.exit_code:
-        return found | {"printed": done.stderr.strip().splitlines()[-1]}
-    with xr.open_dataset(out) as stored:
-        result = stored.squeeze(drop=True).load()
-    closest = int(np.argmin(result["separation"].to_numpy()))
-    at = result.isel(step=closest)
-    found |= {name: float(at[name]) for name in ("contact_fraction", "separation", "force")}
-    found |= {"model_error": float(at["model_error_curve"]), "pull_off": float(result.get("pull_off_force", math.nan))}
-    path, scene = result["separation"].to_numpy(), read(file)
-    found |= _truth(case, scene, path[: closest + 1], float(path[-1]))
-    size = case.surface.size if case.surface else math.sqrt(scene.asperities.nominal_area or math.nan)
-    radius = size * math.sqrt(float(at["contact_fraction"] / (math.pi * at["contact_count"])))
-    return found | {"radius_points": radius / found["radius_points"], "printed": "\n".join(_told(done.stdout))}
+    run, result = said_and_found(case.scene, folder)
+    labels = {"name": case.name, "oracle": case.oracle, "changes": case.changes}
+    found = dict.fromkeys(_NAMES, math.nan) | {"exit_status": run.exit_code} | labels
+    if result is None:
+        return found | {"printed": run.stderr.strip().splitlines()[-1]}
+    result = result.squeeze(drop=True)
+    separation = result["separation"].to_numpy()
+    loading = separation[: int(np.argmin(separation)) + 1]
+    at = result.isel(step=loading.size - 1)
+    return found | {
+        "contact_fraction": float(at["contact_fraction"]),
+        "model_error": float(at["model_error_curve"]),
+        "force": float(at["force"]),
+        "true_force": true_force(case, read(folder / "scene.toml"), loading),
+        "printed": next((line for line in run.stdout.splitlines() if line.startswith("trust ")), ""),
+    }
 
 
-def _told(printed: str) -> list[str]:
-    """Return the lines that say how far the force can be trusted."""
-    name, found = "", []
-    for line in printed.splitlines():
-        name = line[:12].strip() or name
-        if name in _TOLD:
-            found.append(line)
-    return found
-
-
-def _truth(case: Case, scene: Scene, loading: Floats, end: float) -> dict[str, float]:
-    """Return true forces [N], and the spacing of the grid [m] in place of the points of a radius."""
+def true_force(case: Case, scene: Scene, loading: Floats) -> float:
+    """Return the true force [N] at the end of the loading."""
     modulus, work, separation = scene.effective_modulus, scene.work, float(loading[-1])
     if case.surface is not None:
-        several = range(1, MAPS + 1) if case.oracle == "maps" else (1,)
-        forces = of_map(case.surface, several, modulus, separation)
-        scatter = float(np.std(forces, ddof=1)) / math.sqrt(len(forces)) if len(forces) > 1 else 0.0
-        spacing = case.surface.size / (case.surface.points * case.surface.refined)
-        return {"true_force": float(np.mean(forces)), "scatter": scatter, "radius_points": spacing}
+        maps = range(1, MAPS + 1) if case.oracle == "maps" else (1,)
+        return float(np.mean(of_map(case.surface, maps, modulus, separation)))
     ensemble = rm.generate(scene.asperities, seed=scene.seed)  # with positions
     if case.oracle == "boundary elements":
-        force = by_boundary_elements(ensemble, case.points, modulus, separation)
-        return {"true_force": force, "scatter": 0.0, "radius_points": side(ensemble) / case.points}
-    force, pull_off = by_pairs(ensemble, modulus, work, separation, end)
-    if not work:
-        return {"true_force": force, "scatter": 0.0}
-    longer = by_range_of_adhesion(ensemble, modulus, work, loading)
-    return {"true_force": force + longer, "scatter": 0.0, "true_pull_off": pull_off}
+        return by_boundary_elements(ensemble, case.points, modulus, separation)
+    force = by_pairs(ensemble, modulus, work, separation)
+    return force + by_range_of_adhesion(ensemble, modulus, work, loading) if work else force
 
 
 def measure(quick: bool) -> xr.Dataset:
@@ -101,9 +75,7 @@ def measure(quick: bool) -> xr.Dataset:
     cases = [case for case in CASES if not quick or case.name in QUICK]
     with tempfile.TemporaryDirectory() as name, chdir(name), without_limits():
         found = [carry_out(case, Path(name)) for case in cases]
-    words = {name: ("scene", [getattr(case, name) for case in cases]) for name in ("name", "oracle", "changes")}
-    printed = {"printed": ("scene", [each["printed"] for each in found])}
-    return xr.merge([xr.Dataset(in_cases(_NAMES, found, "scene"), words | printed), measure_samples(quick)])
+    return xr.merge([of_rows(_NAMES, found, "scene"), measure_samples(quick)])
 
 
 def errors(result: xr.Dataset) -> Floats:
@@ -123,37 +95,29 @@ def draw(result: xr.Dataset) -> Figure:
 
 
 def report(result: xr.Dataset) -> str:
-    """Return the table of the scenes, the counts, and the lines that were printed."""
+    """Return the table of the scenes, and the counts."""
     error, stated = errors(result), result["model_error"].to_numpy()
     known = np.isfinite(error)
     bounded, within = bounds(error, stated)
-    rows, printed = [], []
-    for i, name in enumerate(result["name"].to_numpy().tolist()):
-        lines = str(result["printed"].values[i]).splitlines()
-        printed.append("\n".join([f"{name}:", *(f"    {line}" for line in lines)]))
-        changes = f" ({result['changes'].values[i]})" if result["changes"].values[i] else ""
-        if not known[i]:
-            rows.append([name + changes, "", f"refused, exit status {result['exit_status'].values[i]:g}", *[""] * 5])
-            continue
-        trust = next((line[12:].strip() for line in lines if line.startswith("trust")), "")
-        answers = ["yes" if part[i] else "no" for part in (bounded, within)]
-        rows.append([name + changes, _percent(result["contact_fraction"].values[i]), trust, _percent(stated[i]),
-                     _percent(error[i]), _ORACLES[str(result["oracle"].values[i])], *answers])  # fmt: skip
+    rows = []
+    for i in range(result.sizes["scene"]):
+        one = {name: result[name].values[i] for name in (*_NAMES, "name", "changes", "oracle", "printed")}
+        name = f"{one['name']} ({one['changes']})" if one["changes"] else str(one["name"])
+        if known[i]:
+            answers = ["yes" if part[i] else "no" for part in (bounded, within)]
+            shares = [_percent(one["contact_fraction"]), one["printed"][12:].strip(), _percent(stated[i])]
+            rows.append([name, *shares, _percent(error[i]), _ORACLES[one["oracle"]], *answers])
+        else:
+            rows.append([name, "", f"refused, exit status {one['exit_status']:g}", *[""] * 5])
     head = ["scene", "contact", "trust", "model error", "true error", "by", "bounded", f"within a factor of {FACTOR:g}"]
     refused = int((~known).sum())
-    off = np.abs(1.0 - result["pull_off"].to_numpy() / result["true_pull_off"].to_numpy())
-    each = ", ".join(f"{_percent(off[i])} ({result['name'].values[i]})" for i in np.flatnonzero(np.isfinite(off)))
     return f"""The stated error of the force at closest approach, against the true one. In {int(known.sum())} scenes
 with a force the model error bounds the true error in {int(bounded[known].sum())}, and is within a factor of
 {FACTOR:g} of it in {int(within[known].sum())}; {refused} more {"is" if refused == 1 else "are"} refused.
-{f"Pull-off forces are off by {each}, by pairs." if each else ""}
 
 {table(head, rows)}
 
 {report_samples(result)}
-Printed:
-
-{chr(10).join(printed)}
 """
 
 

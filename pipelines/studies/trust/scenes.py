@@ -10,7 +10,7 @@ from roughmdr.numerics.arguments import Floats
 from roughmdr.spectrum import SelfAffine
 
 Table = dict[str, Any]
-VARIABLES = ("force", "contact_count", "contact_fraction", "model_error_curve")
+VARIABLES = ("force", "contact_fraction", "model_error_curve")
 _SHIPPED = Path(__file__).parents[2] / "scenes"
 _SEED = 2026
 
@@ -39,18 +39,11 @@ class Case(NamedTuple):
     points: int = 512  # points a side of the grid of boundary elements of asperities
 
 
-def _shipped(name: str, without: tuple[str, ...] = (), **changes: Any) -> Table:
-    """Return a shipped scene without some sections, with one realisation; changes are SECTION__KEY = value."""
+def _shipped(name: str, without: tuple[str, ...] = (), **changes: Table) -> Table:
+    """Return a shipped scene without some sections, with one realisation; changes are keys of its sections."""
     table = tomllib.loads((_SHIPPED / f"{name}.toml").read_text())
-    for section in ("sweep", *without):
-        table.pop(section, None)
-    for key, value in changes.items():
-        section, *keys = key.split("__")
-        inner = table[section]
-        for each in keys[:-1]:
-            inner = inner[each]
-        inner[keys[-1]] = value
-    return _complete(table)
+    kept = {section: keys for section, keys in table.items() if section not in ("sweep", *without)}
+    return _complete(kept | {section: kept[section] | keys for section, keys in changes.items()})
 
 
 def _own(title: str, asperities: Table, separation: Table, **sections: Table) -> Table:
@@ -91,16 +84,15 @@ _FILM = {"count": 240, "patch": "2 um", "radius": "120 nm", "height": _normal("5
 
 CASES = (
     Case("rubber_on_glass", _shipped("rubber_on_glass"), "pairs"),
-    Case("gaussian_surface", _shipped("gaussian_surface", asperities__patch="0.25 mm", asperities__long_wave="30 um"),
+    Case("gaussian_surface", _shipped("gaussian_surface", asperities={"patch": "0.25 mm", "long_wave": "30 um"}),
          "maps", "waves up to 30 um, on 0.25 mm", _GAUSSIAN),
-    Case("measured_surface", _shipped("measured_surface", ("adhesion",), asperities__file="map.nc"),
+    Case("measured_surface", _shipped("measured_surface", ("adhesion",), asperities={"file": "map.nc"}),
          "map", "without adhesion; on a synthetic map", _MEASURED),
     Case("work_and_roughness",
-         _shipped("work_and_roughness", adhesion__work="20 mJ/m^2", asperities__height__std="1 um"),
+         _shipped("work_and_roughness", adhesion={"work": "20 mJ/m^2"}, asperities={"height": _normal("1 um")}),
          "pairs", "the cell 20 mJ/m^2, 1 um"),
     Case("shape_and_pull_off",
-         _shipped("shape_and_pull_off", ("adhesion",), asperities__exponent=4.0, asperities__count=36,
-                  asperities__patch="0.12 mm"),
+         _shipped("shape_and_pull_off", ("adhesion",), asperities={"exponent": 4.0, "count": 36, "patch": "0.12 mm"}),
          "boundary elements", "exponent 4, without adhesion; 36 asperities on 0.12 mm, as dense"),
     Case("sparse",
          _own("Sparse", {"count": 1000, "patch": "1 mm", "radius": "20 um", "height": _normal("1 um")}, _stop(0.003)),
@@ -119,16 +111,16 @@ CASES = (
          "pairs"),
     Case("rough map", _own("Rough map", {"file": "map.nc"}, _stop(0.02)), "map", surface=_COARSE),
     Case("trap: pressed to 40 %",
-         _shipped("rubber_on_glass", ("adhesion",), asperities__count=400, asperities__patch="0.4472 mm",
-                  path__separation__stop={"contact_fraction": 0.4}),
+         _shipped("rubber_on_glass", ("adhesion",), asperities={"count": 400, "patch": "0.4472 mm"},
+                  path={"separation": {"start": "clear", "steps": 200} | _stop(0.4)}),
          "boundary elements", "rubber_on_glass without adhesion, 400 asperities on 0.447 mm, as dense", points=192),
     Case("trap: 3 sigma below",
-         _shipped("rubber_on_glass", ("adhesion",), asperities__count=400,
-                  path__separation={"start": "3 sigma", "stop": "-3 sigma", "steps": 200}),
+         _shipped("rubber_on_glass", ("adhesion",), asperities={"count": 400},
+                  path={"separation": {"start": "3 sigma", "stop": "-3 sigma", "steps": 200}}),
          "boundary elements", "rubber_on_glass without adhesion, 400 asperities"),
     Case("trap: modulus = 3",
-         _shipped("rubber_on_glass", material__modulus=3,
-                  path__separation={"start": "4 sigma", "stop": "1 sigma", "steps": 200}),
+         _shipped("rubber_on_glass", material={"modulus": 3},
+                  path={"separation": {"start": "4 sigma", "stop": "1 sigma", "steps": 200}}),
          "none", "rubber_on_glass down to 1 sigma"),
 )  # fmt: skip
 QUICK = ("hexagonal", "sticky film", "trap: modulus = 3")

@@ -3,7 +3,6 @@
 Pairs adhere as in JKR; the difference that the range of adhesion makes is added from independent asperities.
 """
 
-import math
 from collections.abc import Sequence
 from typing import Any
 
@@ -19,7 +18,7 @@ from studies.trust.scenes import Surface
 from studies.versus_bem.ensembles import distances, height_map, side
 
 _LIFTED = 0.3  # largest lift of the surface between contacts by their pressure, over the deepest overlap
-_LOADING, _UNLOADING = 60, 200  # steps of a path that pairs are taken along
+_LOADING = 60  # steps of the path that pairs are taken along
 MAPS = 5  # Gaussian maps whose mean force is compared with the expected law
 
 
@@ -42,19 +41,15 @@ def refined(height: Floats, factor: int) -> Floats:
     return np.asarray(np.fft.ifft2(np.fft.ifftshift(np.pad(waves, added))).real * factor**2)
 
 
-def by_pairs(ensemble: xr.Dataset, modulus: float, work: float, closest: float, end: float) -> tuple[float, float]:
-    """Return the force [N] of paraboloids at the closest separation, and the least one up to the end (NaN: none)."""
+def by_pairs(ensemble: xr.Dataset, modulus: float, work: float, closest: float) -> float:
+    """Return the force [N] of paraboloids at the closest separation [m], loaded from first touch on."""
     height, radius = (ensemble[name].to_numpy() for name in ("height", "radius"))
     flanks = height[:, None] - 0.5 * distances(ensemble) ** 2 / radius[:, None]
     high = height > closest - _LIFTED * (height.max() - closest)
     may_touch = high & ~(flanks > height).any(axis=0)  # tops below the flank of another never do
     x, y, height, radius = (ensemble[name].to_numpy()[may_touch] for name in ("x", "y", "height", "radius"))
-    green = periodic_green(x, y, side(ensemble), modulus)
-    pressed = Paraboloids(height, radius, green, modulus, work)
-    for h in np.linspace(height.max(), closest, _LOADING):
-        force = pressed.press(float(h)).force
-    unloading = np.linspace(closest, end, _UNLOADING if end > closest else 1)[1:]
-    return force, min((pressed.press(float(h)).force for h in unloading), default=math.nan)
+    pressed = Paraboloids(height, radius, periodic_green(x, y, side(ensemble), modulus), modulus, work)
+    return [pressed.press(float(h)).force for h in np.linspace(height.max(), closest, _LOADING)][-1]
 
 
 def by_range_of_adhesion(ensemble: xr.Dataset, modulus: float, work: float, path: Floats) -> float:

@@ -10,13 +10,13 @@ from typing import Any, NamedTuple
 
 import numpy as np
 import scipy.stats
-from oracles.quantile_means import mean_of_heights, mean_of_radii
 from scipy.stats import rv_continuous
 from scipy.stats._distn_infrastructure import rv_generic
 
 import roughmdr as rm
 from roughmdr.ensemble.random.distribution_families import known_families
 from roughmdr.numerics.arguments import Floats
+from twins.quantile_means import mean_of_heights, mean_of_radii
 
 SLOW = ("gausshyper", "levy_stable", "rel_breitwigner", "studentized_range")
 """Families whose quantiles take scipy longer than a scene may."""
@@ -78,9 +78,8 @@ class Verdict(NamedTuple):
 
     scene: Scene
     outcome: str  # "right", "wrong", "refused" or "no reference"
-    error: float
-    stated: float
-    remark: str = ""
+    error: float = math.nan
+    stated: float = math.nan
 
 
 def families() -> list[str]:
@@ -128,12 +127,12 @@ def judge(scene: Scene) -> Verdict:
         warnings.simplefilter("ignore")
         try:
             curve = rm.run(scene.as_table)
-        except rm.RoughmdrError as error:
-            return Verdict(scene, "refused", np.nan, np.nan, str(error))
+        except rm.RoughmdrError:
+            return Verdict(scene, "refused")
         force, doubt = scene.reference()
     largest = float(np.abs(force).max())
     if not doubt.max() <= _RTOL_REFERENCE * largest:
-        return Verdict(scene, "no reference", float(doubt.max()) / largest, np.nan)
+        return Verdict(scene, "no reference", float(doubt.max()) / largest)
     stated = float(curve.numerical_error[0])
     deviation = np.abs(curve.force.to_numpy()[0] - force)
     right = bool((deviation <= stated * largest + doubt).all())
