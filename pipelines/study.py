@@ -19,12 +19,12 @@ TOGETHER = (
     "trust", "traps",
 )  # fmt: skip
 """Studies that "all" carries out, one after the other."""
+APART = ("accuracy", "asked", "asperity_error", "versus_lammps", "versus_saturated")
+"""Studies that "all" leaves out."""
 MODULES = {
-    **{name: f"studies.{name}" for name in (*TOGETHER, "accuracy", "asked", "asperity_error", "versus_lammps")},
-    **{name: f"figures.{name}" for name in ("adhesion_range", "interaction", "springs", "summits")},
+    **{name: f"studies.{name}" for name in (*TOGETHER, *APART)},
+    **{name: f"figures.{name}" for name in ("adhesion_range", "interaction", "one_asperity", "springs", "summits")},
     **{name: f"benchmarks.{name}" for name in ("batch", "foreseen", "scaling")},
-    "versus_saturated": "studies.versus_saturated",
-    "one_asperity": "figures.one_asperity_pictures",
 }
 """Modules that hold a ``STUDY``, by its name."""
 
