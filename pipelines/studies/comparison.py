@@ -100,6 +100,14 @@ def panels(width: float, height: float, count: int) -> tuple[Figure, list[Axes]]
     return figure, row
 
 
+def draw_errors(panel: Axes, fraction: Floats, errors: Mapping[str, Any]) -> None:
+    """Draw magnitudes of relative errors over the contact fraction, by groups or models."""
+    for label, own in errors.items():
+        panel.loglog(np.ravel(fraction), np.abs(np.ravel(own)), "o", ms=4, label=label)
+    panel.set(xlim=(5e-4, 1.0), ylim=(1e-6, 1.3), xlabel="contact fraction", ylabel="relative error")
+    panel.legend(fontsize=9)
+
+
 def draw_stated(panel: Axes, true: Floats, stated: Floats, groups: Mapping[str, Any]) -> None:
     """Draw stated errors over true ones, by groups that masks choose, with the band in which they are to lie."""
     known = np.isfinite(true) & np.isfinite(stated)
