@@ -1,11 +1,10 @@
-"""Asperities against boundary elements at the same separations: forces, areas, numbers of contacts, and run times.
+"""Asperities against boundary elements at the same separations: forces, areas and numbers of contacts.
 
 Asperities are independent, displaced by the mean pressure, or coupled in pairs to first and second order.
 """
 
 import itertools
 import math
-from functools import partial
 from typing import Any
 
 import numpy as np
@@ -16,8 +15,8 @@ from oracles.boundary_elements import HeightMap, by_perimeter, label_contacts, o
 import roughmdr as rm
 from roughmdr.model_error.interaction import ASPERITIES, SUMMITS, interaction_error
 from roughmdr.numerics.arguments import Floats
-from studies.comparison import HELD, INTERACTIONS, held, in_cases, law_or_nan, median_and_largest, panels
-from studies.study import Figure, Study, in_two_processes, named, table, timed, without_limits
+from studies.comparison import HELD, INTERACTIONS, draw_errors, held, in_cases, law_or_nan, median_and_largest, panels
+from studies.study import Figure, Study, in_two_processes, named, table, without_limits
 from studies.versus_bem.ensembles import (
     CASES,
     FINE,
@@ -51,27 +50,25 @@ _ELEMENTS = {
     "force_bem": ("force of boundary elements, infinite in full contact", "N"),
     "contact_fraction_bem": ("contact fraction of boundary elements", "1"),
     "contact_count_bem": ("contacts of boundary elements", "1"),
-    "seconds_bem": ("run time of a load by boundary elements", "s"),
     "force_coarse": ("force of boundary elements with half as many points a side", "N"),
-    "seconds_second": ("run time of a load to second order", "s"),
     "radius_points": ("root mean square of the contact radii over the spacing of the grid", "1"),
 }
 
 
-def press(surface: HeightMap, separation: float, separated_paraboloids: bool) -> tuple[float, float, float, float]:
-    """Return force, contact fraction, contacts and run time of boundary elements at a separation [m].
+def press(surface: HeightMap, separation: float, separated_paraboloids: bool) -> tuple[float, float, float]:
+    """Return force, contact fraction and number of contacts of boundary elements at a separation [m].
 
     Areas of separated paraboloids are those by their pressure. NaN where elements do not converge, as next to full
     contact.
     """
     try:
-        (force, _), seconds = timed(partial(surface.press, separation))
+        force = surface.press(separation).force
     except rm.OutOfRange:
-        return math.nan, math.nan, math.nan, math.nan
+        return math.nan, math.nan, math.nan
     if not math.isfinite(force):
-        return force, 1.0, 1.0, seconds
+        return force, 1.0, 1.0
     area = of_half_ellipsoids if separated_paraboloids else by_perimeter
-    return force, area(surface.pressure), np.unique(label_contacts(surface.pressure)).size - 1, seconds
+    return force, area(surface.pressure), np.unique(label_contacts(surface.pressure)).size - 1
 
 
 def law_by(ensemble: xr.Dataset, separation: Floats, interaction: Any) -> list[Floats]:
@@ -96,14 +93,13 @@ def compare(case: Case | MapCase) -> dict[str, Any]:
     along = separations(ensemble, FRACTIONS[FRACTIONS <= _FINE_FRACTION] if case.points >= FINE else FRACTIONS)
     along = along[np.isfinite(along)]
     laws = [law_by(ensemble, along, interaction) for interaction in INTERACTIONS.values()]
-    seconds = timed(partial(law_by, ensemble, along, INTERACTIONS["order 2"]))[1] / along.size  # all is compiled by now
     fine, coarse = (HeightMap(height, SIZE, MODULUS) for height in maps)
     radii, distance = [contact_radii(ensemble, h) for h in along.tolist()], distances(ensemble)
     apart = [isinstance(case, Case) and "radius" in ensemble and not touch(each, distance) for each in radii]
     found = np.array([press(fine, *each) for each in zip(along.tolist(), apart, strict=True)]).T
     rough = [press(coarse, *each)[0] for each in zip(along.tolist(), apart, strict=True)]
     points = np.array([np.sqrt(np.mean(a[a > 0.0] ** 2)) for a in radii]) * case.points / SIZE
-    numbers = zip(_ELEMENTS, (*found, rough, np.full(along.size, seconds), points), strict=True)
+    numbers = zip(_ELEMENTS, (*found, rough, points), strict=True)
     return {**dict(zip(_LAW, zip(*laws, strict=True), strict=True)), **dict(numbers)}
 
 
@@ -171,17 +167,10 @@ def draw(result: xr.Dataset) -> Figure:
     along = np.geomspace(5e-4, 1.0, 200)
     for name, kind, style in (("estimate", ASPERITIES, "k-"), ("estimate for maps", SUMMITS, "k--")):
         left.loglog(along, interaction_error(along, kind), style, lw=1.2, label=name)
-    for name in GROUPS:
-        left.plot(fraction[group == name], np.abs(errors(result)[group == name]), "o", ms=4, label=name)
-    left.set(ylim=(0.005, 1.3), ylabel="force too low, of crowds too high, by (relative)", title="Independent")
-    for number, model in enumerate(INTERACTIONS):
-        for own, mark in ((group != "map", "o"), (group == "map", "x")):
-            error = np.abs(errors(result, model, False)[own])
-            right.loglog(fraction[own], error, f"C{number}{mark}", ms=4, label=model if mark == "o" else None)
-    right.set(ylim=(1e-6, 1.3), ylabel="error of the force (relative)", title="By interaction (crosses: maps)")
-    for panel in (left, right):
-        panel.set(xlim=(5e-4, 1.0), xlabel="summed contact area over nominal area")
-        panel.legend(fontsize=9)
+    draw_errors(left, fraction, {name: np.where(group == name, errors(result), np.nan) for name in GROUPS})
+    left.set(ylim=(0.005, 1.3), title="Independent")
+    draw_errors(right, fraction, {model: errors(result, model, False) for model in INTERACTIONS})
+    right.set_title("By interaction")
     return figure
 
 
@@ -215,7 +204,6 @@ def report(result: xr.Dataset) -> str:
             stated.append([order[-1], name, *held(off[own], said[own], unknown[own])])
     fine = result.isel(case=np.flatnonzero(result["seed"].to_numpy() >= _FINE_SEED))
     finest = [_fine(fine.isel(step=i)) for i in range(fine.sizes["step"]) if fine["force_bem"][:, i].notnull().any()]
-    seconds = " and ".join(f"{1e3 * float(result[name].median()):.3g} ms" for name in ("seconds_second", "seconds_bem"))
     grid = grid[np.isfinite(grid)]
     return f"""e over sqrt(f), median (5 to 95 %), f the summed contact fraction of independent asperities:
 
@@ -237,8 +225,6 @@ Separated paraboloids of lognormal radii on the finest grid, largest errors of a
 The error that each order states (not told apart: {_NEGLIGIBLE:g} and less, and errors of the grid):
 
 {table(["order", "placement", *HELD], stated)}
-
-A load to second order and by boundary elements takes {seconds} (median).
 """
 
 
