@@ -59,6 +59,11 @@ def cases_of(result: xr.Dataset, **labels: Any) -> xr.Dataset:
     return result.isel({dim: np.flatnonzero(chosen)})
 
 
+def each_of(result: xr.Dataset, dim: str = "case") -> list[xr.Dataset]:
+    """Return the cases of a result one by one."""
+    return [result.isel({dim: number}) for number in range(result.sizes[dim])]
+
+
 def rms(values: xr.DataArray | Floats) -> float:
     """Return the root mean square of what is known."""
     known = np.asarray(values)[np.isfinite(values)]
