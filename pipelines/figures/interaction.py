@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 import xarray as xr
-from studies.comparison import PAIRS, law_of, panels
+from studies.comparison import INTERACTIONS, law_of, panels
 from studies.study import Figure, Study, named
 
 import roughmdr as rm
@@ -13,9 +13,6 @@ UM = 1e-6
 MODULUS = 3e6 / (1.0 - 0.49**2)  # [Pa]
 PATCH = 1e-3  # [m]
 ASPERITIES = {False: 2000, True: 200}
-MODELS: dict[str, Any] = {
-    "independent": None, "mean field": "mean_field", **{f"pairwise, order {n}": pairs for n, pairs in PAIRS.items()}
-}  # fmt: skip
 COLOURS = ("0.5", "#8a5fb0", "#1b6ca8", "#c8553d")
 
 
@@ -31,17 +28,17 @@ def ensemble_of(count: int) -> xr.Dataset:
 
 
 def measure(quick: bool) -> xr.Dataset:
-    """Return force and contact fraction by each of ``MODELS``."""
+    """Return force and contact fraction by each of ``INTERACTIONS``."""
     ensemble = ensemble_of(ASPERITIES[quick])
     separation = np.linspace(3.0 * UM, UM, 10 if quick else 40)
     names = ("force", "contact_fraction")
     asked: dict[str, Any] = {"separation": separation, "effective_modulus": MODULUS, "variables": names}
-    laws = [law_of(ensemble, interaction=interaction, **asked) for interaction in MODELS.values()]
+    laws = [law_of(ensemble, interaction=interaction, **asked) for interaction in INTERACTIONS.values()]
     force, fraction = (np.array([law[name].to_numpy() for law in laws]) for name in names)
     over = ("model", "step")
     return xr.Dataset(
         {"force": (over, force, named("force", "N")), "contact_fraction": (over, fraction, named("contact fraction"))},
-        {"model": list(MODELS), "separation": ("step", separation, named("separation", "m"))},
+        {"model": list(INTERACTIONS), "separation": ("step", separation, named("separation", "m"))},
     )
 
 
@@ -49,7 +46,7 @@ def draw(result: xr.Dataset) -> Figure:
     """Draw forces over the separation, and over that of independent asperities."""
     figure, (left, right) = panels(10, 4.4, 2)
     alone = result["force"].sel(model="independent")
-    for name, colour in zip(MODELS, COLOURS, strict=True):
+    for name, colour in zip(INTERACTIONS, COLOURS, strict=True):
         own = result.sel(model=name)
         left.semilogy(result["separation"] / UM, 1e3 * own["force"].where(own["force"] > 0.0), color=colour, label=name)
         right.plot(100.0 * own["contact_fraction"], own["force"] / alone, color=colour, label=name)
@@ -66,7 +63,7 @@ def report(result: xr.Dataset) -> str:
     return "\n".join(
         f"{name}: force {float(ratio.sel(model=name)):.4g} times that of independent asperities, "
         f"contact {100.0 * float(last['contact_fraction'].sel(model=name)):.3g} %"
-        for name in MODELS
+        for name in INTERACTIONS
     )
 
 

@@ -1,4 +1,4 @@
-"""Asperities against boundary elements at the same separations: forces, areas and numbers of contacts.
+"""Asperities against boundary elements at the same separations: forces and areas.
 
 Asperities are independent, displaced by the mean pressure, or coupled in pairs to first and second order.
 """
@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
-from oracles.boundary_elements import HeightMap, by_perimeter, label_contacts, of_half_ellipsoids
+from oracles.boundary_elements import HeightMap, by_perimeter, of_half_ellipsoids
 
 import roughmdr as rm
 from roughmdr.model_error.interaction import ASPERITIES, SUMMITS, interaction_error
@@ -49,14 +49,13 @@ _LAW = {
 _ELEMENTS = {
     "force_bem": ("force of boundary elements, infinite in full contact", "N"),
     "contact_fraction_bem": ("contact fraction of boundary elements", "1"),
-    "contact_count_bem": ("contacts of boundary elements", "1"),
     "force_coarse": ("force of boundary elements with half as many points a side", "N"),
     "radius_points": ("root mean square of the contact radii over the spacing of the grid", "1"),
 }
 
 
-def press(surface: HeightMap, separation: float, separated_paraboloids: bool) -> tuple[float, float, float]:
-    """Return force, contact fraction and number of contacts of boundary elements at a separation [m].
+def press(surface: HeightMap, separation: float, separated_paraboloids: bool) -> tuple[float, float]:
+    """Return force and contact fraction of boundary elements at a separation [m].
 
     Areas of separated paraboloids are those by their pressure. NaN where elements do not converge, as next to full
     contact.
@@ -64,11 +63,9 @@ def press(surface: HeightMap, separation: float, separated_paraboloids: bool) ->
     try:
         force = surface.press(separation).force
     except rm.OutOfRange:
-        return math.nan, math.nan, math.nan
-    if not math.isfinite(force):
-        return force, 1.0, 1.0
+        return math.nan, math.nan
     area = of_half_ellipsoids if separated_paraboloids else by_perimeter
-    return force, area(surface.pressure), np.unique(label_contacts(surface.pressure)).size - 1
+    return force, area(surface.pressure) if math.isfinite(force) else 1.0
 
 
 def law_by(ensemble: xr.Dataset, separation: Floats, interaction: Any) -> list[Floats]:
@@ -220,7 +217,7 @@ Errors of the force by interaction, median of the magnitude (largest):
 
 Separated paraboloids of lognormal radii on the finest grid, largest errors of all seeds:
 
-{table(["f", *INTERACTIONS, "of the grid", "area", "contacts"], finest)}
+{table(["f", *INTERACTIONS, "of the grid", "area"], finest)}
 
 The error that each order states (not told apart: {_NEGLIGIBLE:g} and less, and errors of the grid):
 
@@ -238,9 +235,8 @@ def _fine(step: xr.Dataset) -> list[str]:
     off = [abs(force / exact - 1.0) for force in (*step["force"].transpose("model", ...), step["force_bem"])]
     second = step.sel(model="order 2")
     area = abs(second["contact_fraction"] / step["contact_fraction_bem"] - 1.0)
-    missed = abs(second["contact_count"] - step["contact_count_bem"])
     cells = (f"{100.0 * float(error.max()):.2g} %" for error in (*off, area))
-    return [f"{float(second['contact_fraction'].median()):.2g}", *cells, f"{float(missed.max()):.0f} off"]
+    return [f"{float(second['contact_fraction'].median()):.2g}", *cells]
 
 
 STUDY = Study(
