@@ -13,9 +13,8 @@ from roughmdr.ensemble.maps.detrend import remove_trend
 from roughmdr.ensemble.maps.height_map import HeightMap
 from roughmdr.ensemble.maps.hills.find import wavelength
 from roughmdr.ensemble.maps.read_map import read_map
-from roughmdr.ensemble.maps.resolution import MAX_HILLS_ERROR, hills_error
 from roughmdr.ensemble.maps.summits import find_summits
-from studies.comparison import percent, rms
+from studies.comparison import ERRORS, each_of, error_cells, errors_against, percent
 from studies.hills.maps import FRACTIONS, QUANTITIES, by_asperities, by_elements, elements_of, hills_of, where_reached
 from studies.study import named, table
 
@@ -63,13 +62,10 @@ def _measure(surface: HeightMap) -> xr.Dataset:
         by_asperities(surface, separation, hills_of, _ALONE),
     ]
     numbers, over = np.array([each.numbers for each in found]), ("surface_solver", "fraction")
-    points, length = surface.height.shape[0], wavelength(surface)
     return xr.Dataset(
         {
             **{f"surface_{name}": (over, numbers[:, i]) for i, name in enumerate(QUANTITIES)},
-            "surface_points": ((), points, named("points a side")),
-            "surface_waves": ((), points * surface.dx / length, named("wavelengths a side")),
-            "surface_resolution_error": ((), hills_error(length / surface.dx)),
+            "points_per_wave": ((), wavelength(surface) / surface.dx, named("points a wavelength of the hills")),
         },
         {"surface_solver": ["free elements", *FREE_METHODS], "fraction": list(FRACTIONS)},
     )
@@ -81,38 +77,21 @@ def report_files(result: xr.Dataset) -> str:
         return (
             f"Measured maps were left out: the environment variable {FOLDER} names no folder with {' or '.join(FILES)}."
         )
-    rows, described = [], []
-    for name in map(str, result["surface"].to_numpy()):
-        own = result.sel(surface=name)
-        described.append(_described(name, own))
+    rows = []
+    for own in each_of(result, "surface"):
+        name, per_wave = own["surface"].item(), f"{float(own['points_per_wave']):.1f}"
         for method in FREE_METHODS:
-            force, area, stiffness = (errors_on_files(own, each).sel(surface_solver=method) for each in QUANTITIES)
-            known = np.isfinite(force.to_numpy())
-            mean = f"{100 * float(force.mean()):+.1f} %" if known.any() else "-"
+            errors = [errors_on_files(own, quantity).sel(surface_solver=method) for quantity in QUANTITIES]
+            known = np.isfinite(errors[0].to_numpy())
             last = percent(float(own["fraction"].to_numpy()[known].max(initial=0.0)), 0)
-            rows.append([name, method, percent(rms(force)), mean, percent(rms(area), 0), percent(rms(stiffness)), last])
-    head = ["map", "method", "force, rms", "mean", "area, rms", "stiffness, rms", "answers up to"]
+            rows.append([name, per_wave, method, *error_cells(*errors), last])
     return (
         "Measured maps, squares from the middle, against boundary elements of a free half-space on the same points: "
         "errors of the forces of all cells, those at the border too, where summits beyond it are missing."
-        f"\n\n{table(head, rows)}\n\n{' '.join(described)}"
+        f"\n\n{table(['map', 'points a wavelength', 'method', *ERRORS, 'answers up to'], rows)}"
     )
 
 
 def errors_on_files(result: xr.Dataset, quantity: str = "force") -> xr.DataArray:
     """Return relative errors on measured maps over surface, surface_solver and fraction."""
-    values = result[f"surface_{quantity}"]
-    return values.drop_sel(surface_solver="free elements") / values.sel(surface_solver="free elements", drop=True) - 1.0
-
-
-def _described(name: str, own: xr.Dataset) -> str:
-    """Return what to know of a map before its errors are read."""
-    per_wave, error = float(own["surface_points"] / own["surface_waves"]), float(own["surface_resolution_error"])
-    few = (
-        f"; that is too few: elements and hills on these points are held to each other, and neither to the surface, "
-        f"whose forces are higher by about {percent(error, 0)} (`resolution_error`)"
-    )
-    return (
-        f"{name}: {int(own['surface_points'])} points and {float(own['surface_waves']):.0f} wavelengths a side, "
-        f"{per_wave:.1f} points a wavelength{few if error > MAX_HILLS_ERROR else ''}."
-    )
+    return errors_against(result[f"surface_{quantity}"], "free elements", "surface_solver")
