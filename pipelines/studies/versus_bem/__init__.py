@@ -15,8 +15,18 @@ from oracles.boundary_elements import HeightMap, by_perimeter, of_half_ellipsoid
 import roughmdr as rm
 from roughmdr.model_error.interaction import ASPERITIES, SUMMITS, interaction_error
 from roughmdr.numerics.arguments import Floats
-from studies.comparison import HELD, INTERACTIONS, draw_errors, held, in_cases, law_or_nan, median_and_largest, panels
-from studies.study import Figure, Study, in_two_processes, named, table, without_limits
+from studies.comparison import (
+    HELD,
+    INTERACTIONS,
+    draw_errors,
+    each_of,
+    held,
+    in_cases,
+    law_or_nan,
+    median_and_largest,
+    panels,
+)
+from studies.study import Figure, Study, in_two_processes, table, without_limits
 from studies.versus_bem.ensembles import (
     CASES,
     FINE,
@@ -36,7 +46,6 @@ GROUPS = ("few contacts", "random", "separated", "square", "nayak", "map", "crow
 FEW_CONTACTS = 4.0
 """Up to so many, contacts of the patch and of its periodic images are a lattice, wherever they are placed."""
 _MIN_POINTS = 2.5  # least points of the grid a contact radius: with fewer, elements are off by a per cent and more
-_NEGLIGIBLE = 1e-4  # least error that is told apart from none
 _FINE_SEED = 11  # and above, of the cases on the finest grids
 _BINS = ((0.0, 0.004), (0.004, 0.03), (0.03, 0.15), (0.15, 1.0))
 _FINER_BINS = tuple(itertools.pairwise((0.0, 0.004, 0.03, 0.06, 0.15, 1.0)))
@@ -104,15 +113,11 @@ def measure(quick: bool) -> xr.Dataset:
     """Compare all cases, or a few of them on coarse grids."""
     cases = QUICK if quick else CASES
     found = in_two_processes(compare, cases)
-    placement, shape, roughness = zip(*(case.labels for case in cases), strict=True)
-    words = named("heights over the drop at a spacing; of maps, of the waves")
     return xr.Dataset(
         in_cases(_LAW, found, "case", "model", "step") | in_cases(_ELEMENTS, found, "case", "step"),
         {
             "model": list(INTERACTIONS),
-            "placement": ("case", list(placement)),
-            "shape": ("case", list(shape)),
-            "roughness": ("case", list(roughness), words),
+            "placement": ("case", [case.placement if isinstance(case, Case) else "map" for case in cases]),
             "seed": ("case", [case.seed for case in cases]),
         },
     )
@@ -172,44 +177,31 @@ def draw(result: xr.Dataset) -> Figure:
 
 
 def report(result: xr.Dataset) -> str:
-    """Return errors over sqrt(f), by interaction and on the finest grids, and how the stated ones do."""
-    fraction = result["contact_fraction"].sel(model="independent").to_numpy()
-    error, group = errors(result), groups(result)
-    coefficients, estimated, by_model, stated = [], [], [], []
-
-    def told_by(model: str) -> Floats:
-        return result["model_error_curve"].sel(model=model).to_numpy()
-
+    """Return errors over sqrt(f), how the stated ones do, and errors by interaction and on the finest grids."""
+    independent = result.sel(model="independent")
+    fraction, error, group = independent["contact_fraction"].to_numpy(), errors(result), groups(result)
+    stated = np.where(group == "crowd", independent["model_error_curve"], estimates(fraction, group))
+    coefficients, estimated, by_model = [], [], []
     for name in GROUPS:
         own = np.isfinite(error) & (group == name)
         parts = [own & (fraction > low) & (fraction <= high) for low, high in _BINS]
         coefficients.append([name, *(_quantiles(error[part] / np.sqrt(fraction[part])) for part in parts)])
         if own.any():
-            told = told_by("independent") if name == "crowd" else estimates(fraction, group)
-            estimated.append([name, *held(np.abs(error[own]), told[own])])
-    for name, (low, high) in itertools.product(GROUPS, _FINER_BINS):
-        own = (group == name) & (fraction > low) & (fraction <= high)
-        if own.any():
-            found = [median_and_largest(errors(result, model, False)[own]) for model in INTERACTIONS]
-            by_model.append([name, f"{low:g} to {high:g}", *found])
-    grid = grid_errors(result)
-    unknown = np.fmax(grid, _NEGLIGIBLE)
-    for order, name in itertools.product(("order 1", "order 2"), GROUPS):
-        off, said = np.abs(errors(result, order, False)), told_by(order)
-        own = np.isfinite(off) & np.isfinite(said) & (group == name)
-        if own.any():
-            stated.append([order[-1], name, *held(off[own], said[own], unknown[own])])
+            estimated.append([name, *held(np.abs(error[own]), stated[own])])
+        for low, high in _FINER_BINS:
+            part = (group == name) & (fraction > low) & (fraction <= high)
+            if part.any():
+                found = [median_and_largest(errors(result, model, False)[part]) for model in INTERACTIONS]
+                by_model.append([name, f"{low:g} to {high:g}", *found])
     fine = result.isel(case=np.flatnonzero(result["seed"].to_numpy() >= _FINE_SEED))
-    finest = [_fine(fine.isel(step=i)) for i in range(fine.sizes["step"]) if fine["force_bem"][:, i].notnull().any()]
-    grid = grid[np.isfinite(grid)]
+    finest = [_fine(step) for step in each_of(fine, "step") if step["force_bem"].notnull().any()]
     return f"""e over sqrt(f), median (5 to 95 %), f the summed contact fraction of independent asperities:
 
 {table(["placement", *(f"f from {low:g} to {high:g}" for low, high in _BINS)], coefficients)}
 
 {table(["placement", *HELD], estimated)}
 
-Forces of boundary elements on half as many points differ by {100.0 * float(np.median(grid)):.2g} % (median), at most
-{100.0 * float(grid.max()):.2g} %.
+Forces of boundary elements on half as many points differ by {median_and_largest(grid_errors(result))}.
 
 Errors of the force by interaction, median of the magnitude (largest):
 
@@ -218,10 +210,6 @@ Errors of the force by interaction, median of the magnitude (largest):
 Separated paraboloids of lognormal radii on the finest grid, largest errors of all seeds:
 
 {table(["f", *INTERACTIONS, "of the grid", "area"], finest)}
-
-The error that each order states (not told apart: {_NEGLIGIBLE:g} and less, and errors of the grid):
-
-{table(["order", "placement", *HELD], stated)}
 """
 
 

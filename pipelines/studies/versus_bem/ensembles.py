@@ -39,11 +39,6 @@ class Case(NamedTuple):
     points: int  # a side of the grid of boundary elements
     seed: int
 
-    @property
-    def labels(self) -> tuple[str, str, float]:
-        """Placement, shape and roughness."""
-        return self.placement, self.shape, self.roughness
-
     def build(self) -> tuple[xr.Dataset, Floats, Floats]:
         """Return the ensemble, and its height map on the grid and on one of half as many points a side."""
         ensemble = self.generate()
@@ -162,11 +157,6 @@ class MapCase(NamedTuple):
     short_wave: float
     points: int  # a side of the grid
     seed: int
-
-    @property
-    def labels(self) -> tuple[str, str, float]:
-        """Placement, shape, and the ratio of the wavelengths."""
-        return "map", f"hurst {self.hurst:g}", self.long_wave / self.short_wave
 
     def build(self) -> tuple[xr.Dataset, Floats, Floats]:
         """Return the summits, and the map on its grid and on every second point of it, which still holds its waves."""
