@@ -39,11 +39,6 @@ POINTS, QUICK = 121, 41
 _MATERIAL: Any = {"effective_modulus": MODULUS, "work": WORK}
 
 
-def stretch(radius: Floats | float) -> Floats:
-    """Return dl(a) = sqrt(2 pi a w/E*) [m], the stretch at which a spring at the edge detaches (H 44)."""
-    return np.sqrt(2.0 * math.pi * WORK / MODULUS * np.asarray(radius))
-
-
 def pull_off_curves() -> xr.Dataset:
     """Return force against indentation of three shapes, loading, unloading and unstable, and the pull-offs."""
     points = np.linspace(0.0, 1.0, POINTS)
@@ -104,7 +99,7 @@ def shape_and_pull_off(points: int = POINTS) -> xr.Dataset:
     n g(width) = 2.5 dl(width).
     """
     exponents = np.geomspace(SHARPEST, FLATTEST, points)
-    rises = stretch(WIDTH) / np.array(STRETCHES)
+    rises = math.sqrt(2.0 * math.pi * WORK / MODULUS * WIDTH) / np.array(STRETCHES)
     force, radius = np.moveaxis(np.array(
         [[[pull_off_within_width(n, rise, control) for n in exponents] for control in CONTROLS] for rise in rises]
     ), -1, 0)  # fmt: skip

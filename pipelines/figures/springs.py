@@ -75,7 +75,6 @@ def row_of_springs(points: int = 2401) -> xr.Dataset:
             "path_indentation": ("point", path, named("indentation", "m")),
             "path_force": ("point", force, named("force of the row of springs", "N")),
             "path_force_exact": ("point", exact, named("force, exact", "N")),
-            "spring_depth": ("spring", depth, named("MDR profile at a spring, g(x)", "m")),
             "spring_end": (("stage", "spring"), ends, named("end of a spring above the undeformed surface", "m")),
             "stage_indentation": ("stage", path[at], named("indentation", "m")),
             "stage_contact_radius": ("stage", radius[at], named("contact radius", "m")),

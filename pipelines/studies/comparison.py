@@ -59,35 +59,20 @@ def cases_of(result: xr.Dataset, **labels: Any) -> xr.Dataset:
     return result.isel({dim: np.flatnonzero(chosen)})
 
 
-def each_of(result: xr.Dataset, dim: str = "case") -> list[xr.Dataset]:
-    """Return the cases of a result one by one."""
-    return [result.isel({dim: number}) for number in range(result.sizes[dim])]
-
-
-def errors_against(values: xr.DataArray, true: str, dim: str = "solver") -> xr.DataArray:
-    """Return the relative errors of all solutions but the true one."""
-    return values.drop_sel({dim: true}) / values.sel({dim: true}, drop=True) - 1.0
-
-
 def rms(values: xr.DataArray | Floats) -> float:
     """Return the root mean square of what is known."""
     known = np.asarray(values)[np.isfinite(values)]
     return float(np.sqrt(np.mean(known**2))) if known.size else np.nan
 
 
+def each_of(result: xr.Dataset, dim: str = "case") -> list[xr.Dataset]:
+    """Return the cases of a result one by one."""
+    return [result.isel({dim: number}) for number in range(result.sizes[dim])]
+
+
 def percent(value: float, digits: int = 1) -> str:
     """Return a share in per cent; a dash where it is unknown."""
     return f"{100.0 * value:.{digits}f} %" if np.isfinite(value) else "-"
-
-
-ERRORS = ["force, rms", "mean", "area, rms", "stiffness, rms"]  # heads of the cells
-
-
-def error_cells(force: xr.DataArray, area: xr.DataArray, stiffness: xr.DataArray) -> list[str]:
-    """Return relative errors of a method as the cells under ``ERRORS``; dashes where it has no force."""
-    known = bool(np.isfinite(force).any())
-    mean = f"{100.0 * float(force.mean()):+.1f} %" if known else "-"
-    return [percent(rms(force)), mean, percent(rms(area), 0), percent(rms(stiffness))]
 
 
 def median_and_largest(errors: xr.DataArray | Floats) -> str:

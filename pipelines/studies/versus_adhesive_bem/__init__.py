@@ -92,30 +92,14 @@ class Judged(NamedTuple):
     pull_off: float  # relative error of the largest tension on unloading
     on: float
     """Mean lag of the jumps on over the stretch at which one alone lets go; > 0 where it jumps on at a smaller gap."""
-    off: float  # the lag at letting go; > 0 where it lets go at a smaller gap
     apart: float  # share of the steps in contact where not as many are in contact
-
-
-def turning(separation: Floats) -> int:
-    """Return the step at which the path turns."""
-    return int(np.nanargmin(separation))
-
-
-def jumps(count: Floats, separation: Floats) -> tuple[Floats, Floats]:
-    """Return the separations at which one more and one less comes into contact, each midway between two steps."""
-    turn = turning(separation)
-    change = np.diff(count, prepend=0.0)
-    middle = 0.5 * (separation + np.roll(separation, 1))
-    on, off = (np.maximum(sign * part, 0).astype(int)
-               for sign, part in ((1, change[: turn + 1]), (-1, change[turn + 1 :])))  # fmt: skip
-    return np.repeat(middle[: turn + 1], on), np.repeat(middle[turn + 1 :], off)
 
 
 def known(case: xr.Dataset) -> tuple[xr.Dataset, Floats, int]:
     """Return a case without what lies beyond the end of its path, the separations, and the step at which it turns."""
     case = case.dropna("step", subset=["separation"])
     separation = case["separation"].to_numpy()
-    return case, separation, turning(separation)
+    return case, separation, int(np.argmin(separation))
 
 
 def judge(case: xr.Dataset, source: str) -> Judged:
@@ -127,16 +111,14 @@ def judge(case: xr.Dataset, source: str) -> Judged:
     tension = -true[turn:].min()
     alike, contact = count == true_count, (count > 0) | (true_count > 0)
     off = np.where(alike & contact, np.abs(force - true), 0.0) / tension
-    lags = [
-        float(np.mean(np.sort(there) - np.sort(here))) / -DETACHED if there.size == here.size else np.nan
-        for here, there in zip(*(jumps(each, separation) for each in (count, true_count)), strict=True)
-    ]
+    middle = 0.5 * (separation[1 : turn + 1] + separation[:turn])
+    made, truly_made = (np.repeat(middle, np.maximum(np.diff(each[: turn + 1]), 0).astype(int))
+                        for each in (count, true_count))  # fmt: skip
     return Judged(
         loading=float(off[: turn + 1].max()),
         unloading=float(off[turn:].max()),
         pull_off=float(-force[turn:].min() / tension - 1.0),
-        on=lags[0],
-        off=lags[1],
+        on=float(np.mean(truly_made - made)) / -DETACHED if made.size == truly_made.size else np.nan,
         apart=float(np.mean(~alike[contact])),
     )
 
@@ -202,10 +184,10 @@ def report(result: xr.Dataset) -> str:
             rows.append([f"{int(case['asperities'])}", apart, f"{float(case['tabor']):g}", source, *found])
     step = float(-result["separation"].isel(case=0).diff("step")[0])
     head = ["asperities", "apart (nearest) [a0]", "Tabor number", "source", "loading", "unloading", "pull-off force",
-            "jumps on", "lets go", "steps not compared"]  # fmt: skip
+            "jumps on", "steps not compared"]  # fmt: skip
     return f"""Errors against boundary elements: of the force over the largest tension, the largest of the steps where
 as many asperities are in contact, and of the pull-off force. Lags of jumps, means over the asperities: how much farther
-away they jump on and let go by boundary elements, over the stretch at which one alone lets go (a step of the path is
+away they jump on by boundary elements, over the stretch at which one alone lets go (a step of the path is
 {100.0 * step / -DETACHED:.0f} % of it). One alone has its periodic images as neighbours. The coarse grid has 2/3 as
 many points a side:
 
