@@ -1,18 +1,16 @@
 """The asperities of the first scene without adhesion, independent and coupled: force over separation, and its ratio."""
 
-from typing import Any
-
 import numpy as np
 import xarray as xr
-from studies.comparison import INTERACTIONS, law_of, panels
+from studies.comparison import INTERACTIONS, in_cases, law_or_nan, panels
 from studies.study import Figure, Study, named
 
 import roughmdr as rm
 
 UM = 1e-6
 MODULUS = 3e6 / (1.0 - 0.49**2)  # [Pa]
-PATCH = 1e-3  # [m]
 ASPERITIES = {False: 2000, True: 200}
+_LAW = {"force": ("force", "N"), "contact_fraction": ("contact fraction", "1")}
 COLOURS = ("0.5", "#8a5fb0", "#1b6ca8", "#c8553d")
 
 
@@ -20,7 +18,7 @@ def ensemble_of(count: int) -> xr.Dataset:
     """Return paraboloids at random, as dense as in the scene."""
     section = {
         "source": "random", "shape": "paraboloid", "placement": "random", "count": count,
-        "patch": PATCH * (count / 2000) ** 0.5,
+        "patch": 1e-3 * (count / 2000) ** 0.5,
         "height": {"distribution": "normal", "std": UM},
         "radius": {"distribution": "lognormal", "mean": 50 * UM, "std": 5 * UM},
     }  # fmt: skip
@@ -31,13 +29,10 @@ def measure(quick: bool) -> xr.Dataset:
     """Return force and contact fraction by each of ``INTERACTIONS``."""
     ensemble = ensemble_of(ASPERITIES[quick])
     separation = np.linspace(3.0 * UM, UM, 10 if quick else 40)
-    names = ("force", "contact_fraction")
-    asked: dict[str, Any] = {"separation": separation, "effective_modulus": MODULUS, "variables": names}
-    laws = [law_of(ensemble, interaction=interaction, **asked) for interaction in INTERACTIONS.values()]
-    force, fraction = (np.array([law[name].to_numpy() for law in laws]) for name in names)
-    over = ("model", "step")
+    laws = [law_or_nan(ensemble, separation, *_LAW, effective_modulus=MODULUS, interaction=each)
+            for each in INTERACTIONS.values()]  # fmt: skip
     return xr.Dataset(
-        {"force": (over, force, named("force", "N")), "contact_fraction": (over, fraction, named("contact fraction"))},
+        in_cases(_LAW, laws, "model", "step"),
         {"model": list(INTERACTIONS), "separation": ("step", separation, named("separation", "m"))},
     )
 

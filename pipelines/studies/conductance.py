@@ -40,7 +40,6 @@ _MODELS = {
     "conductance": ("conductance radius over the side, at the separation", "1"),
     "stated": ("stated error of the conductance there", "1"),
     "conductance_under_load": ("conductance radius over the side, under the load of the boundary elements", "1"),
-    "stated_under_load": ("stated error of the conductance there", "1"),
 }
 GROUPS = ("random", "separated", "hills", "summits")
 _GRID, _UNKNOWN = 0.5, 5e-3
@@ -97,7 +96,7 @@ def compare(case: Case | MapCase) -> list[dict[str, Any]]:
         for number, (model, interaction) in enumerate(INTERACTIONS.items()):
             if name != "hills" or model.startswith("order"):  # hills need pairs
                 laws[:2, number] = law_at(ensemble, surface.side, interaction, "separation", along)
-                laws[2:, number] = law_at(ensemble, surface.side, interaction, "force", fine[:, 0])
+                laws[2, number] = law_at(ensemble, surface.side, interaction, "force", fine[:, 0])[0]
         placed = name if isinstance(case, MapCase) else "random" if case.placement == "random" else "separated"
         rows.append({"group": placed, **elements, **dict(zip(_MODELS, laws, strict=True))})
     return rows
@@ -121,10 +120,9 @@ def grid_errors(result: xr.Dataset) -> xr.DataArray:
     return off.where(~(off < _UNKNOWN), _UNKNOWN)
 
 
-def bounded(result: xr.Dataset, under_load: bool = False) -> xr.DataArray:
+def bounded(result: xr.Dataset) -> xr.DataArray:
     """Return whether the stated error holds, to the error of the grid, over cases, models and steps; NaN of none."""
-    suffix = "_under_load" if under_load else ""
-    error, stated = abs(errors(result, f"conductance{suffix}")), result[f"stated{suffix}"]
+    error, stated = abs(errors(result)), result["stated"]
     return (error <= stated + grid_errors(result)).where(np.isfinite(error) & np.isfinite(stated))
 
 
@@ -147,9 +145,7 @@ def report(result: xr.Dataset) -> str:
             continue
         for name, where in (("conductance", "separation"), ("conductance_under_load", "load")):
             rows.append([group, model, where, *map(median_and_largest, errors(one, name).to_numpy().T)])
-        held.append(
-            [group, model, *(percent(float(bounded(one, under_load).mean()), 0) for under_load in (False, True))]
-        )
+        held.append([group, model, percent(float(bounded(one).mean()), 0)])
     head = ["surfaces", "model", "at given", *(f"{100.0 * each:g} %" for each in FRACTIONS)]
     grid = median_and_largest(grid_errors(result).to_numpy())
     return f"""Errors of the conductance by contact fraction, median of the magnitude (largest):
@@ -158,7 +154,7 @@ def report(result: xr.Dataset) -> str:
 
 The stated error of the conductance holds, with that of the grid:
 
-{table(["surfaces", "model", "at given separation", "at given load"], held)}
+{table(["surfaces", "model", "at given separation"], held)}
 
 The grids of boundary elements are right to about {grid}.
 """

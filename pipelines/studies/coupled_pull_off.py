@@ -88,8 +88,7 @@ def surfaces(quick: bool) -> list[Surface]:
 
 def measure(quick: bool) -> xr.Dataset:
     """Return the numbers of the cycles of all surfaces, with each model and for each realisation."""
-    asked = surfaces(quick)
-    found = []
+    asked, found = surfaces(quick), []
     for surface in asked:
         drawn = [surface.generate(r) for r in range(REALIZATIONS[quick])]
         cycles = [[cycle(each, interaction, STEPS) for each in drawn] for interaction in MODELS.values()]

@@ -10,7 +10,7 @@ from roughmdr.numerics.arguments import Floats
 from studies.comparison import cases_of, each_of, in_cases, panels
 from studies.study import Axes, Figure, Study, table
 from studies.versus_adhesive_bem.cases import DETACHED, MODELS, WORK, Case, law
-from studies.versus_bem.ensembles import distances, height_map
+from studies.versus_bem.ensembles import height_map
 
 _COLOURS = {"independent": "0.6", "order 2": "#c8553d"}
 _SHOWN = 4.0  # Tabor number of the curves, or that next to it
@@ -28,7 +28,6 @@ CASES = (
     Case(9, 5.0, 2.0, 384, 2),
 )
 QUICK = (Case(1, 8.0, 2.0, 144, step=0.08), Case(4, 5.0, 2.0, 192, step=0.08))
-SOURCES = (*MODELS, "elements", "coarse grid")
 _QUANTITIES = {
     "force": ("force over E* a0^3/R", "1"),
     "area": ("contact area over a0^2; of boundary elements the mean of those closed and within the range", "1"),
@@ -37,7 +36,6 @@ _QUANTITIES = {
 _COLUMNS = {
     "asperities": ("asperities in the patch", "1"),
     "spacing": ("mean spacing over a0", "1"),
-    "nearest": ("least distance over a0", "1"),
     "tabor": ("Tabor number of the mean radius", "1"),
 }
 
@@ -68,7 +66,6 @@ def compare(case: Case) -> dict[str, Any]:
         "separation": separation - float(ensemble["height"].max()),
         "asperities": case.asperities,
         "spacing": case.spacing,
-        "nearest": float(distances(ensemble).min()),
         "tabor": case.tabor,
     }
 
@@ -79,7 +76,7 @@ def measure(quick: bool) -> xr.Dataset:
     along = {"separation": ("separation from the highest asperity over a0^2/R", "1")}
     return xr.Dataset(
         in_cases(_QUANTITIES, compared, "case", "source", "step") | in_cases(along, compared, "case", "step"),
-        {"source": list(SOURCES), **in_cases(_COLUMNS, compared, "case")},
+        {"source": [*MODELS, "elements", "coarse grid"], **in_cases(_COLUMNS, compared, "case")},
     )
 
 
@@ -92,7 +89,6 @@ class Judged(NamedTuple):
     pull_off: float  # relative error of the largest tension on unloading
     on: float
     """Mean lag of the jumps on over the stretch at which one alone lets go; > 0 where it jumps on at a smaller gap."""
-    apart: float  # share of the steps in contact where not as many are in contact
 
 
 def known(case: xr.Dataset) -> tuple[xr.Dataset, Floats, int]:
@@ -119,7 +115,6 @@ def judge(case: xr.Dataset, source: str) -> Judged:
         unloading=float(off[turn:].max()),
         pull_off=float(-force[turn:].min() / tension - 1.0),
         on=float(np.mean(truly_made - made)) / -DETACHED if made.size == truly_made.size else np.nan,
-        apart=float(np.mean(~alike[contact])),
     )
 
 
@@ -177,19 +172,15 @@ def report(result: xr.Dataset) -> str:
     """Return errors, and where jumps are, by case and source."""
     rows = []
     for case in each_of(result):
-        nearest = float(case["nearest"])
-        apart = f"{float(case['spacing']):g} ({f'{nearest:.1f}' if np.isfinite(nearest) else 'images'})"
+        labels = [f"{float(case[name]):g}" for name in _COLUMNS]
         for source in (*MODELS, "coarse grid"):
             found = [f"{100.0 * each:.2g} %" for each in judge(case, source)]
-            rows.append([f"{int(case['asperities'])}", apart, f"{float(case['tabor']):g}", source, *found])
-    step = float(-result["separation"].isel(case=0).diff("step")[0])
-    head = ["asperities", "apart (nearest) [a0]", "Tabor number", "source", "loading", "unloading", "pull-off force",
-            "jumps on", "steps not compared"]  # fmt: skip
+            rows.append([*labels, source, *found])
+    head = ["asperities", "apart [a0]", "Tabor number", "source", "loading", "unloading", "pull-off force", "jumps on"]
     return f"""Errors against boundary elements: of the force over the largest tension, the largest of the steps where
 as many asperities are in contact, and of the pull-off force. Lags of jumps, means over the asperities: how much farther
-away they jump on by boundary elements, over the stretch at which one alone lets go (a step of the path is
-{100.0 * step / -DETACHED:.0f} % of it). One alone has its periodic images as neighbours. The coarse grid has 2/3 as
-many points a side:
+away they jump on by boundary elements, over the stretch at which one alone lets go. One alone has its periodic images
+as neighbours. The coarse grid has 2/3 as many points a side:
 
 {table(head, rows)}
 """
