@@ -109,7 +109,7 @@ def draw_errors(panel: Axes, fraction: Floats, errors: Mapping[str, Any]) -> Non
     """Draw magnitudes of relative errors over the contact fraction, by groups or models."""
     for label, own in errors.items():
         panel.loglog(np.ravel(fraction), np.abs(np.ravel(own)), "o", ms=4, label=label)
-    panel.set(xlim=(5e-4, 1.0), ylim=(1e-6, 1.3), xlabel="contact fraction", ylabel="relative error")
+    panel.set(xlim=(5e-4, 1.0), xlabel="contact fraction", ylabel="relative error")
     panel.legend(fontsize=9)
 
 

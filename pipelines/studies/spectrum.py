@@ -7,8 +7,8 @@ import xarray as xr
 
 import roughmdr as rm
 from roughmdr.ensemble.spectral.section import SpectrumAsperities
-from studies.comparison import in_cases, panels
-from studies.study import Figure, Study, named, table, without_limits
+from studies.comparison import in_cases
+from studies.study import Figure, Study, blank, named, table, without_limits
 
 HURST = (0.3, 0.5, 0.8)
 SHARES = (2.5, 2.0, 1.5, 1.0)  # separations over the r.m.s. height
@@ -94,7 +94,8 @@ def report(result: xr.Dataset) -> str:
 def draw(result: xr.Dataset) -> Figure:
     """Draw the error of the mean force of each source over the contact fraction."""
     off, error = means(result)
-    figure, row = panels(12.0, 4.4, result.sizes["hurst"])
+    figure = blank(12.0, 4.4)
+    row = figure.subplots(1, result.sizes["hurst"], sharey=True)
     fraction = 100.0 * result["contact_fraction"].sel(solver=METHODS[-1]).mean("realization")
     for panel, hurst in zip(row, result["hurst"].to_numpy(), strict=True):
         for method in METHODS[:-1]:

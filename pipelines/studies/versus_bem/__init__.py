@@ -172,7 +172,7 @@ def draw(result: xr.Dataset) -> Figure:
     draw_errors(left, fraction, {name: np.where(group == name, errors(result), np.nan) for name in GROUPS})
     left.set(ylim=(0.005, 1.3), title="Independent")
     draw_errors(right, fraction, {model: errors(result, model, False) for model in INTERACTIONS})
-    right.set_title("By interaction")
+    right.set(ylim=(1e-6, 1.3), title="By interaction")
     return figure
 
 
