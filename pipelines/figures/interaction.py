@@ -1,21 +1,16 @@
 """The asperities of the first scene without adhesion, independent and coupled: force over separation, and its ratio."""
 
-from typing import Any
-
 import numpy as np
 import xarray as xr
-from studies.comparison import PAIRS, law_of, panels
+from studies.comparison import INTERACTIONS, in_cases, law_or_nan, panels
 from studies.study import Figure, Study, named
 
 import roughmdr as rm
 
 UM = 1e-6
 MODULUS = 3e6 / (1.0 - 0.49**2)  # [Pa]
-PATCH = 1e-3  # [m]
 ASPERITIES = {False: 2000, True: 200}
-MODELS: dict[str, Any] = {
-    "independent": None, "mean field": "mean_field", **{f"pairwise, order {n}": pairs for n, pairs in PAIRS.items()}
-}  # fmt: skip
+_LAW = {"force": ("force", "N"), "contact_fraction": ("contact fraction", "1")}
 COLOURS = ("0.5", "#8a5fb0", "#1b6ca8", "#c8553d")
 
 
@@ -23,7 +18,7 @@ def ensemble_of(count: int) -> xr.Dataset:
     """Return paraboloids at random, as dense as in the scene."""
     section = {
         "source": "random", "shape": "paraboloid", "placement": "random", "count": count,
-        "patch": PATCH * (count / 2000) ** 0.5,
+        "patch": 1e-3 * (count / 2000) ** 0.5,
         "height": {"distribution": "normal", "std": UM},
         "radius": {"distribution": "lognormal", "mean": 50 * UM, "std": 5 * UM},
     }  # fmt: skip
@@ -31,17 +26,14 @@ def ensemble_of(count: int) -> xr.Dataset:
 
 
 def measure(quick: bool) -> xr.Dataset:
-    """Return force and contact fraction by each of ``MODELS``."""
+    """Return force and contact fraction by each of ``INTERACTIONS``."""
     ensemble = ensemble_of(ASPERITIES[quick])
     separation = np.linspace(3.0 * UM, UM, 10 if quick else 40)
-    names = ("force", "contact_fraction")
-    asked: dict[str, Any] = {"separation": separation, "effective_modulus": MODULUS, "variables": names}
-    laws = [law_of(ensemble, interaction=interaction, **asked) for interaction in MODELS.values()]
-    force, fraction = (np.array([law[name].to_numpy() for law in laws]) for name in names)
-    over = ("model", "step")
+    laws = [law_or_nan(ensemble, separation, *_LAW, effective_modulus=MODULUS, interaction=each)
+            for each in INTERACTIONS.values()]  # fmt: skip
     return xr.Dataset(
-        {"force": (over, force, named("force", "N")), "contact_fraction": (over, fraction, named("contact fraction"))},
-        {"model": list(MODELS), "separation": ("step", separation, named("separation", "m"))},
+        in_cases(_LAW, laws, "model", "step"),
+        {"model": list(INTERACTIONS), "separation": ("step", separation, named("separation", "m"))},
     )
 
 
@@ -49,7 +41,7 @@ def draw(result: xr.Dataset) -> Figure:
     """Draw forces over the separation, and over that of independent asperities."""
     figure, (left, right) = panels(10, 4.4, 2)
     alone = result["force"].sel(model="independent")
-    for name, colour in zip(MODELS, COLOURS, strict=True):
+    for name, colour in zip(INTERACTIONS, COLOURS, strict=True):
         own = result.sel(model=name)
         left.semilogy(result["separation"] / UM, 1e3 * own["force"].where(own["force"] > 0.0), color=colour, label=name)
         right.plot(100.0 * own["contact_fraction"], own["force"] / alone, color=colour, label=name)
@@ -66,7 +58,7 @@ def report(result: xr.Dataset) -> str:
     return "\n".join(
         f"{name}: force {float(ratio.sel(model=name)):.4g} times that of independent asperities, "
         f"contact {100.0 * float(last['contact_fraction'].sel(model=name)):.3g} %"
-        for name in MODELS
+        for name in INTERACTIONS
     )
 
 

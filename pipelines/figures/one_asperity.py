@@ -1,8 +1,6 @@
-"""One asperity under JKR adhesion: the two steps of its contact, its pull-off, and the shape that adheres best.
+"""One asperity under JKR adhesion: how it is pressed, lifted and detached, and the shape that adheres best.
 
-The two steps are Fig. 8 of M. Heß, "On the reduction method of dimensionality: the exact mapping of axisymmetric
-contact problems with and without adhesion", 2012; shapes of one size follow H. Yao, H. Gao, J. Colloid Interface Sci.
-298 (2006) 564.
+Shapes of one size follow H. Yao, H. Gao, J. Colloid Interface Sci. 298 (2006) 564.
 """
 
 import math
@@ -11,9 +9,10 @@ from typing import Any, Literal
 import numpy as np
 import xarray as xr
 from scipy.optimize import minimize_scalar
-from studies.study import named
+from studies.study import Figure, Study, blank, named
 
 import roughmdr as rm
+from figures.springs import COMPRESSED, STRETCHED
 from roughmdr.numerics.arguments import Floats
 from roughmdr.shapes import Shape
 
@@ -33,55 +32,11 @@ KNOWN = {
 Control = Literal["displacement", "force"]
 CONTROLS: tuple[Control, ...] = ("displacement", "force")
 COURSES = ("loading", "unloading", "unstable")
-PRESSED = 2.0  # contact radius of the two steps, over that at first touch
-INSIDE, SPRINGS = 8, 12  # springs from the middle to the edge of the contact, and to the end of the row
 WIDTH = 10e-6  # width of the power laws whose exponent is varied [m]
 STRETCHES = (0.3, 1.0, 3.0)  # dl(width) over their rise
 SHARPEST, FLATTEST = 1.0, 100.0  # exponents
 POINTS, QUICK = 121, 41
 _MATERIAL: Any = {"effective_modulus": MODULUS, "work": WORK}
-
-
-def stretch(radius: Floats | float) -> Floats:
-    """Return dl(a) = sqrt(2 pi a w/E*) [m], the stretch at which a spring at the edge detaches (H 44)."""
-    return np.sqrt(2.0 * math.pi * WORK / MODULUS * np.asarray(radius))
-
-
-def two_steps() -> xr.Dataset:
-    """Return the row of springs below a cone: pressed without adhesion, lifted at fixed radius, and at its pull-off."""
-    cone = SHAPES["cone"]
-    touch = rm.indent(cone, **_MATERIAL, indentation=0.0)
-    radius = PRESSED * float(touch.contact_radius)
-    states = {
-        "pressed": rm.indent(cone, effective_modulus=MODULUS, contact_radius=radius),
-        "lifted": rm.indent(cone, **_MATERIAL, contact_radius=radius),
-        "pull-off": rm.pull_off(cone, **_MATERIAL, control="displacement"),
-    }
-    radii, depths, force = (
-        np.array([float(state[name]) for state in states.values()])
-        for name in ("contact_radius", "indentation", "force")
-    )
-    numbers = np.arange(-SPRINGS, SPRINGS + 1)
-    position = radii[:, None] * numbers / INSIDE  # so that one spring is at the very edge
-    surface = np.where(np.abs(numbers) <= INSIDE, cone.g(np.abs(position)) - depths[:, None], 0.0)
-    row = ("stage", "spring")
-    return xr.Dataset(
-        {
-            "spring_position": (row, position, named("distance of a spring from the axis", "m")),
-            "spring_end": (row, surface, named("end of a spring above the undeformed surface", "m")),
-            "stage_contact_radius": ("stage", radii, named("contact radius a", "m")),
-            "stage_depth": ("stage", cone.g(radii), named("MDR profile at the contact radius, g(a)", "m")),
-            "stage_stretch": ("stage", stretch(radii), named("stretch at which a spring at a detaches, dl(a)", "m")),
-            "stage_indentation": ("stage", depths, named("indentation", "m")),
-            "stage_force": ("stage", force, named("force, compression > 0", "N")),
-            "touch_radius": ((), radius / PRESSED, named("contact radius of the cone at first touch", "m")),
-            "touch_depth": ((), float(stretch(radius / PRESSED)), named("stretch of the edge at first touch", "m")),
-        },
-        coords={
-            "stage": ("stage", list(states), {"long_name": "state of the row of springs"}),
-            "spring": ("spring", numbers, named("number of the spring")),
-        },
-    )
 
 
 def pull_off_curves() -> xr.Dataset:
@@ -144,7 +99,7 @@ def shape_and_pull_off(points: int = POINTS) -> xr.Dataset:
     n g(width) = 2.5 dl(width).
     """
     exponents = np.geomspace(SHARPEST, FLATTEST, points)
-    rises = stretch(WIDTH) / np.array(STRETCHES)
+    rises = math.sqrt(2.0 * math.pi * WORK / MODULUS * WIDTH) / np.array(STRETCHES)
     force, radius = np.moveaxis(np.array(
         [[[pull_off_within_width(n, rise, control) for n in exponents] for control in CONTROLS] for rise in rises]
     ), -1, 0)  # fmt: skip
@@ -184,8 +139,8 @@ def _worst(exponents: Floats, force: Floats, rise: float, control: Control) -> l
 
 def measure(quick: bool) -> xr.Dataset:
     """Return all numbers of the figure."""
-    result = xr.merge([two_steps(), pull_off_curves(), shape_and_pull_off(QUICK if quick else POINTS)])
-    return result.assign_attrs(effective_modulus=MODULUS, work=WORK, slope=SLOPE, width=WIDTH, springs_inside=INSIDE)
+    result = xr.merge([pull_off_curves(), shape_and_pull_off(QUICK if quick else POINTS)])
+    return result.assign_attrs(effective_modulus=MODULUS, work=WORK, slope=SLOPE, width=WIDTH)
 
 
 def report(result: xr.Dataset) -> str:
@@ -200,3 +155,82 @@ def report(result: xr.Dataset) -> str:
         lines.append(f"dl(width)/rise = {ratio:<4g} worst exponent {float(one.worst_exponent):.2f}, with {part:.3f} "
                      "of the force of a flat face")  # fmt: skip
     return "\n".join(lines)
+
+
+_KNOWN = {  # under fixed grips and under dead load
+    "cone": (r"$-\frac{6\,w^2}{\pi E^* S^3}$", r"$-\frac{54\,w^2}{\pi E^* S^3}$  (Maugis)"),
+    "paraboloid": (r"$-\frac{5}{6}\,\pi w R$", r"$-\frac{3}{2}\,\pi w R$  (JKR)"),
+    "flat punch": ("", r"$-\sqrt{8\pi E^* w b^3}$  (Kendall)"),
+}
+
+
+def draw_pull_off_curves(result: xr.Dataset) -> Figure:
+    """Draw for each shape the force over its pull-off force under dead load, against depth over that at pull-off."""
+    figure = blank(13, 4.8)
+    for ax, name in zip(figure.subplots(1, 3, sharey=True), result["shape"].to_numpy(), strict=True):
+        shape = result.sel(shape=name)
+        grips, dead_load = (shape.sel(control=control) for control in ("displacement", "force"))
+        force, depth = -float(dead_load.pull_off_force), -float(grips.pull_off_indentation)
+        x, y = shape.curve_indentation / depth, shape.curve_force / force
+        last, touch = float(grips.pull_off_force) / force, float(y.sel(course="loading")[0])
+        widest = float(x.sel(course="loading").max())
+        low = -1.0 - 0.16 * (widest + 1.0)
+        for line in (ax.axhline, ax.axvline):
+            line(0.0, color="0.7", lw=0.7, zorder=0)
+        ax.plot([low, 0.0], [0.0, 0.0], color=COMPRESSED, lw=4, alpha=0.45)
+        for course, style, label in (
+            ("loading", {"color": COMPRESSED, "lw": 4, "alpha": 0.45}, "loading, with its jump at first touch"),
+            ("unloading", {"color": STRETCHED, "lw": 1.8}, "unloading, fixed grips"),
+            ("unstable", {"color": "k", "lw": 1.2, "ls": "--"}, "unstable"),
+        ):
+            if np.isfinite(x.sel(course=course)).all():
+                ax.plot(x.sel(course=course), y.sel(course=course), label=label, **style)
+        for at, start, end, colour in ((0.0, 0.0, touch, COMPRESSED), (-1.0, last, 0.0, STRETCHED)):
+            if abs(start - end) > 1e-9:
+                jump = {"arrowstyle": "-|>", "color": colour, "lw": 1.4, "ls": ":", "shrinkA": 0, "shrinkB": 0}
+                ax.annotate("", (at, end), (at, start), arrowprops=jump)
+        ax.plot(-1.0, last, "o", color=STRETCHED, ms=7, label="pull-off under fixed grips")
+        at = float(dead_load.pull_off_indentation) / depth
+        ax.plot(at, -1.0, "o", mec="k", mfc="none", mew=1.5, ms=11, label="pull-off under dead load")
+        for text, known in zip(_KNOWN[str(name)], shape.known_force.to_numpy() / force, strict=True):
+            if text:
+                ax.axhline(known, color="0.4", lw=0.8, ls=":", zorder=0)
+                ax.text(widest, known - 0.02, text, ha="right", va="top", fontsize=11)
+        ax.set(xlim=(low, widest), ylim=(-1.3, 1.0), title=name, xlabel="δ / |δ at pull-off under fixed grips|")
+    figure.axes[0].set_ylabel("P / |P at pull-off under dead load|")
+    figure.axes[1].legend(frameon=False, fontsize=9, loc="upper left")
+    return figure
+
+
+def draw_shape_and_pull_off(result: xr.Dataset) -> Figure:
+    """Draw the pull-off force over that of a flat face of the same width, against the exponent, with the worst ones."""
+    figure = blank(7.6, 5.0)
+    ax = figure.subplots()
+    for color, ratio in zip((COMPRESSED, STRETCHED, "#3b7a57"), result.relative_stretch.to_numpy(), strict=True):
+        for control, style in (("force", "-"), ("displacement", "--")):
+            one = result.sel(relative_stretch=ratio, control=control)
+            force = one.held_force / result.flat_force
+            label = f"Δℓ(width)/rise = {ratio:g}" if control == "force" else None
+            ax.plot(one.exponent, force, color=color, ls=style, lw=1.8, label=label)
+            worst = one.worst_force / result.flat_force
+            ax.plot(one.worst_exponent, worst, "v", color=color, ms=8, clip_on=False, zorder=3)
+            at_rim = one.held_radius.to_numpy() == result.attrs["width"]
+            ax.plot(one.exponent[at_rim], force[at_rim], color=color, lw=5, alpha=0.35)
+    ax.axhline(1.0, color="0.3", lw=1.0)
+    sharpest, flattest = float(result.exponent.min()), float(result.exponent.max())
+    ax.text(flattest, 1.01, "flat face, n → ∞ (Kendall): best for every rise ▸", ha="right", va="bottom", fontsize=9)
+    for style, label in (("k-", "dead load"), ("k--", "fixed grips"), ("kv", "worst exponent")):
+        ax.plot([], [], style, label=label)
+    ax.plot([], [], "k-", lw=5, alpha=0.35, label="contact as wide as the asperity")
+    ax.set(xscale="log", xlim=(sharpest, flattest), ylim=(0.0, 1.08))
+    ax.set_xticks([1, 2, 3, 5, 10, 20, 50, 100], ["1\ncone", "2\nparaboloid", "3", "5", "10", "20", "50", "100"])
+    ax.set(xlabel="exponent n of f = rise (r/width)ⁿ", ylabel="pull-off force / that of a flat face of that width")
+    ax.legend(frameon=False, fontsize=9, loc="lower right")
+    return figure
+
+
+STUDY = Study(
+    "one_asperity", "One asperity under JKR adhesion", measure,
+    {"pull_off_curves": draw_pull_off_curves, "shape_and_pull_off": draw_shape_and_pull_off}, report,
+    f"{QUICK} of {POINTS} shapes",
+)  # fmt: skip

@@ -4,17 +4,16 @@ The row is drawn as in Fig. 8 of M. Heß, "On the reduction method of dimensiona
 contact problems with and without adhesion", 2012. Errors are those at given indentations against the closed forms.
 """
 
-import itertools
 from typing import Any
 
 import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
-from studies.study import Axes, Draw, Figure, Study, blank, named, without_limits
+from studies.study import Axes, Figure, Study, blank, named, without_limits
 
 import roughmdr as rm
-from figures.drawing import COMPRESSED, STRETCHED, draw_axes, draw_body, draw_length, draw_springs
 from roughmdr.numerics.arguments import Floats
+from roughmdr.pictures.asperity import coils
 from roughmdr.shapes import Shape
 from roughmdr.springs import Springs
 
@@ -41,9 +40,8 @@ COUNTS = 100 * 2 ** np.arange(9)
 QUICK = COUNTS[:4]
 DEPTHS = np.geomspace(0.31, 23.0, 16)  # above the fold, over its depth
 EXACT = 1e-12  # errors below are roundings
+COMPRESSED, STRETCHED = "#1b6ca8", "#c8553d"  # colours of springs and of courses
 _MATERIAL: Any = {"effective_modulus": MODULUS, "work": WORK}
-_COLORS = {"none": COMPRESSED, "jkr": STRETCHED}
-_LABELS = {"none": "no adhesion", "jkr": "JKR"}
 _STAGES = {
     "pressed": "A  loading: springs attach up to a stretch u of Δℓ(x)",
     "pulled": "B  back at first touch: all are stretched",
@@ -77,7 +75,6 @@ def row_of_springs(points: int = 2401) -> xr.Dataset:
             "path_indentation": ("point", path, named("indentation", "m")),
             "path_force": ("point", force, named("force of the row of springs", "N")),
             "path_force_exact": ("point", exact, named("force, exact", "N")),
-            "spring_depth": ("spring", depth, named("MDR profile at a spring, g(x)", "m")),
             "spring_end": (("stage", "spring"), ends, named("end of a spring above the undeformed surface", "m")),
             "stage_indentation": ("stage", path[at], named("indentation", "m")),
             "stage_contact_radius": ("stage", radius[at], named("contact radius", "m")),
@@ -171,17 +168,28 @@ def draw_row(result: xr.Dataset) -> Figure:
 
 def _draw_stage(ax: Axes, stage: xr.Dataset, radius: float) -> None:
     """Draw the MDR profile of the tip, the springs and the stretch of the outermost one in contact."""
+    from matplotlib.collections import LineCollection
+
     positions, ends = (1e6 * stage[name].to_numpy() for name in ("spring_position", "spring_end"))
     bottom, top, half = -0.95, 0.8, 1.02 * float(positions[-1])
     x = np.linspace(-half, half, 401)
     g = 1e6 * rm.Paraboloid(radius=radius).g(1e-6 * np.abs(x))
-    draw_body(ax, x, g - 1e6 * float(stage.stage_indentation), top)
+    profile = g - 1e6 * float(stage.stage_indentation)
+    ax.fill_between(x, profile, top, where=list(profile <= top), color="#e4e0d8", lw=0)
+    ax.plot(x, profile, color="#4a4a4a", lw=1.4)
+    ax.axhline(0.0, color="0.45", lw=0.9, ls=(0, (6, 4)), zorder=0)
     contact = np.abs(positions) < 1e6 * float(stage.stage_contact_radius)
+    colors = list(np.where(contact, np.where(ends > 0.0, STRETCHED, COMPRESSED), "#9a9a9a"))
     width = 0.2 * float(positions[1] - positions[0])
-    draw_springs(ax, positions, ends, bottom, width=width, attached=contact)
+    ax.add_collection(LineCollection(coils(positions, ends, bottom, width), colors=colors, linewidths=0.9))
+    ax.scatter(positions, ends, s=9, c=colors, zorder=3)
+    ax.axhline(bottom, color="#4a4a4a", lw=2.5)
     outer = np.flatnonzero(contact)[-1]
     x_outer, u = float(positions[outer]), float(ends[outer])
-    draw_length(ax, (x_outer, 0.0), (x_outer, u), "u", (x_outer + 0.25, 0.5 * u))
+    ax.annotate(
+        "", (x_outer, u), (x_outer, 0.0), arrowprops={"arrowstyle": "<->", "lw": 1.2, "shrinkA": 0, "shrinkB": 0}
+    )
+    ax.text(x_outer + 0.25, 0.5 * u, "u", ha="center", va="center", fontsize=12)
     ax.set(xlim=(-half, half), ylim=(bottom - 0.02, top))
 
 
@@ -200,37 +208,14 @@ def _draw_path(ax: Axes, result: xr.Dataset) -> None:
         at = 1e6 * float(stage.stage_indentation), 1e6 * float(stage.stage_force)
         ax.plot(*at, "ko", ms=5, zorder=4)
         ax.annotate(title[0], at, (7, -12), textcoords="offset points", fontsize=12, weight="bold")
-    draw_axes(ax)
+    for line in (ax.axhline, ax.axvline):
+        line(0.0, color="0.7", lw=0.7, zorder=0)
     ax.set(xlabel="indentation δ [µm]", ylabel="force P [µN]")
     ax.set_title("Every tooth is a pair of springs that attaches or detaches", fontsize=10.5)
     ax.legend(frameon=False, fontsize=9.5, loc="upper left")
 
 
-def draw_errors(result: xr.Dataset) -> Figure:
-    """Draw the errors of each shape against the number of springs."""
-    figure = blank(16, 8.5)
-    axes = figure.subplots(3, 4, sharex=True, sharey=True)
-    for ax, name in zip(axes.flat, result["shape"].to_numpy(), strict=False):
-        for (model, color), quantity in itertools.product(_COLORS.items(), ("force", "radius")):
-            one = result.sel(shape=name, adhesion=model)
-            order = float(one[f"{quantity}_order"])
-            text = "exact" if np.isnan(order) else f"$N^{{-{order:.2f}}}$"
-            errors = one[f"{quantity}_error"].where(not np.isnan(order))
-            style = "o-" if quantity == "force" else "s:"
-            label = f"{quantity}, {_LABELS[model]}: {text}"
-            ax.plot(one.springs, errors, style, color=color, ms=3, lw=1.0, label=label)
-        ax.set(xscale="log", yscale="log", ylim=(1e-14, 0.1))
-        ax.set_title(name, fontsize=10.5)
-        ax.grid(color="0.92")
-        ax.legend(frameon=False, fontsize=8, loc="lower left")
-    for ax in axes[-1]:
-        ax.set_xlabel("springs N")
-    figure.supylabel("relative error, root mean square over 16 indentations", fontsize=10)
-    return figure
-
-
-PICTURES: dict[str, Draw] = {"springs_row": draw_row, "springs_error": draw_errors}
 STUDY = Study(
-    "springs", "One asperity as a row of springs", measure, PICTURES, report,
+    "springs", "One asperity as a row of springs", measure, {"springs_row": draw_row}, report,
     f"rows of up to {max(QUICK)} of {max(COUNTS)} springs",
 )  # fmt: skip

@@ -77,6 +77,11 @@ def rms(values: xr.DataArray | Floats) -> float:
     return float(np.sqrt(np.mean(known**2))) if known.size else np.nan
 
 
+def each_of(result: xr.Dataset, dim: str = "case") -> list[xr.Dataset]:
+    """Return the cases of a result one by one."""
+    return [result.isel({dim: number}) for number in range(result.sizes[dim])]
+
+
 def percent(value: float, digits: int = 1) -> str:
     """Return a share in per cent; a dash where it is unknown."""
     return f"{100.0 * value:.{digits}f} %" if np.isfinite(value) else "-"
@@ -110,6 +115,14 @@ def panels(width: float, height: float, count: int) -> tuple[Figure, list[Axes]]
         panel.grid(color="0.92")
         panel.set_axisbelow(True)
     return figure, row
+
+
+def draw_errors(panel: Axes, fraction: Floats, errors: Mapping[str, Any]) -> None:
+    """Draw magnitudes of relative errors over the contact fraction, by groups or models."""
+    for label, own in errors.items():
+        panel.loglog(np.ravel(fraction), np.abs(np.ravel(own)), "o", ms=4, label=label)
+    panel.set(xlim=(5e-4, 1.0), xlabel="contact fraction", ylabel="relative error")
+    panel.legend(fontsize=9)
 
 
 def draw_stated(panel: Axes, true: Floats, stated: Floats, groups: Mapping[str, Any]) -> None:

@@ -13,7 +13,16 @@ import xarray as xr
 import roughmdr as rm
 from roughmdr.elements.half_space import BoundaryElements
 from roughmdr.numerics.arguments import Floats
-from studies.comparison import INTERACTIONS, cases_of, in_cases, law_of, median_and_largest, panels, percent
+from studies.comparison import (
+    INTERACTIONS,
+    cases_of,
+    draw_errors,
+    in_cases,
+    law_of,
+    median_and_largest,
+    panels,
+    percent,
+)
 from studies.hills.maps import MapCase
 from studies.study import Figure, Study, in_two_processes, table, without_limits
 from studies.surfaces import surface_of
@@ -22,7 +31,6 @@ from studies.versus_bem.ensembles import Case
 FRACTIONS = np.array([0.001, 0.003, 0.01, 0.03, 0.06, 0.1])  # contact fractions by boundary elements, about
 _SEARCHED = 16  # separations among which those of the contact fractions are looked for
 _DIFFERENCE = 0.02  # change of the separation, over the depth of the flat below the highest summit
-_LAW = ("conductance_radius", "contact_fraction", "conductance_error", "overlap_fraction")
 _ELEMENTS = {
     "conductance_bem": ("conductance radius over the side, by boundary elements", "1"),
     "conductance_coarse": ("conductance radius with half as many points a side", "1"),
@@ -30,14 +38,10 @@ _ELEMENTS = {
 }
 _MODELS = {
     "conductance": ("conductance radius over the side, at the separation", "1"),
-    "contact_fraction": ("summed contact area over nominal area there", "1"),
     "stated": ("stated error of the conductance there", "1"),
-    "overlap": ("share of contacts that overlap; in pairs of the force", "1"),
     "conductance_under_load": ("conductance radius over the side, under the load of the boundary elements", "1"),
-    "stated_under_load": ("stated error of the conductance there", "1"),
 }
 GROUPS = ("random", "separated", "hills", "summits")
-_COLOURS = {"independent": "0.6", "mean field": "#8a5fb0", "order 1": "#1b6ca8", "order 2": "#c8553d"}
 _GRID, _UNKNOWN = 0.5, 5e-3
 """Error of boundary elements over what every other point of their grid changes, of the first to the second order; at
 least that of a stiffness by differences, as cells touch one by one.
@@ -67,15 +71,15 @@ def press(elements: BoundaryElements, separation: float) -> tuple[float, float, 
     return force[0], 0.5 * stiffness, elements.patches().area
 
 
-def law_at(ensemble: xr.Dataset, side: float, interaction: Any, control: str, values: Floats) -> list[Floats]:
-    """Return the numbers of ``_LAW`` at given separations or forces, over the side; NaN where there are none."""
-    found, scale = np.full((len(_LAW), FRACTIONS.size), np.nan), {"separation": side, "force": side**2}[control]
+def law_at(ensemble: xr.Dataset, side: float, interaction: Any, control: str, values: Floats) -> Floats:
+    """Return the conductance radius over the side and its stated error, at given separations or forces; NaN of none."""
+    found, scale = np.full((2, values.size), np.nan), {"separation": side, "force": side**2}[control]
     for i in np.flatnonzero(np.isfinite(values)):
         given: dict[str, Any] = {control: [float(values[i]) * scale], "interaction": interaction}
         with contextlib.suppress(rm.RoughmdrError):
-            law = law_of(ensemble, effective_modulus=1.0, variables=("force", *_LAW[:2]), **given)
-            found[:, i] = [law[name].item() for name in _LAW]
-    return [found[0] / side, *found[1:]]
+            law = law_of(ensemble, effective_modulus=1.0, variables=("force", "conductance_radius"), **given)
+            found[:, i] = law["conductance_radius"].item() / side, law["conductance_error"].item()
+    return found
 
 
 def compare(case: Case | MapCase) -> list[dict[str, Any]]:
@@ -91,8 +95,8 @@ def compare(case: Case | MapCase) -> list[dict[str, Any]]:
         laws = np.full((len(_MODELS), len(INTERACTIONS), FRACTIONS.size), np.nan)
         for number, (model, interaction) in enumerate(INTERACTIONS.items()):
             if name != "hills" or model.startswith("order"):  # hills need pairs
-                under = law_at(ensemble, surface.side, interaction, "force", fine[:, 0])
-                laws[:, number] = *law_at(ensemble, surface.side, interaction, "separation", along), under[0], under[2]
+                laws[:2, number] = law_at(ensemble, surface.side, interaction, "separation", along)
+                laws[2, number] = law_at(ensemble, surface.side, interaction, "force", fine[:, 0])[0]
         placed = name if isinstance(case, MapCase) else "random" if case.placement == "random" else "separated"
         rows.append({"group": placed, **elements, **dict(zip(_MODELS, laws, strict=True))})
     return rows
@@ -116,28 +120,19 @@ def grid_errors(result: xr.Dataset) -> xr.DataArray:
     return off.where(~(off < _UNKNOWN), _UNKNOWN)
 
 
-def bounded(result: xr.Dataset, under_load: bool = False) -> xr.DataArray:
+def bounded(result: xr.Dataset) -> xr.DataArray:
     """Return whether the stated error holds, to the error of the grid, over cases, models and steps; NaN of none."""
-    suffix = "_under_load" if under_load else ""
-    error, stated = abs(errors(result, f"conductance{suffix}")), result[f"stated{suffix}"]
+    error, stated = abs(errors(result)), result["stated"]
     return (error <= stated + grid_errors(result)).where(np.isfinite(error) & np.isfinite(stated))
 
 
 def draw(result: xr.Dataset) -> Figure:
     """Draw the error at given separation and under given load over the contact fraction."""
-    figure, (left, right) = panels(14, 4.8, 2)
-    for panel, name, title in (
-        (left, "conductance", "At given separation"), (right, "conductance_under_load", "Under given load")
-    ):  # fmt: skip
-        for model, colour in _COLOURS.items():
-            for group, mark in zip(GROUPS, "os^x", strict=True):
-                own = cases_of(result, group=group).sel(model=model)
-                label = f"{model}, {group}" if panel is left else None
-                drawn = (own["contact_fraction_bem"], abs(errors(own, name)))
-                panel.loglog(*(each.to_numpy().ravel() for each in drawn), mark, color=colour, ms=4, label=label)
-        panel.set(xlabel="contact fraction", ylabel="error of the conductance (relative)", title=title)
-        panel.set_ylim(1e-4, 1.0)
-    figure.legend(loc="outside right center", fontsize=8)
+    figure, row = panels(12, 4.8, 2)
+    fraction = result["contact_fraction_bem"].to_numpy()
+    for panel, name in zip(row, ("conductance", "conductance_under_load"), strict=True):
+        draw_errors(panel, fraction, {model: errors(result, name).sel(model=model) for model in INTERACTIONS})
+        panel.set_title(name.replace("_", " "))
     return figure
 
 
@@ -150,9 +145,7 @@ def report(result: xr.Dataset) -> str:
             continue
         for name, where in (("conductance", "separation"), ("conductance_under_load", "load")):
             rows.append([group, model, where, *map(median_and_largest, errors(one, name).to_numpy().T)])
-        held.append(
-            [group, model, *(percent(float(bounded(one, under_load).mean()), 0) for under_load in (False, True))]
-        )
+        held.append([group, model, percent(float(bounded(one).mean()), 0)])
     head = ["surfaces", "model", "at given", *(f"{100.0 * each:g} %" for each in FRACTIONS)]
     grid = median_and_largest(grid_errors(result).to_numpy())
     return f"""Errors of the conductance by contact fraction, median of the magnitude (largest):
@@ -161,7 +154,7 @@ def report(result: xr.Dataset) -> str:
 
 The stated error of the conductance holds, with that of the grid:
 
-{table(["surfaces", "model", "at given separation", "at given load"], held)}
+{table(["surfaces", "model", "at given separation"], held)}
 
 The grids of boundary elements are right to about {grid}.
 """

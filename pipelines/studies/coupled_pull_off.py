@@ -7,7 +7,7 @@ import numpy as np
 import xarray as xr
 
 import roughmdr as rm
-from studies.comparison import PAIRS, in_cases, law_of, panels
+from studies.comparison import PAIRS, each_of, in_cases, law_of, panels
 from studies.study import Axes, Figure, Study, named, table
 
 MODULUS = 2e6  # [Pa]
@@ -31,7 +31,6 @@ _CYCLE = {
     "pull_off_force": ("pull-off force, below 0, located between the steps", "N"),
     "pull_off_contacts": ("contacts at pull-off", "1"),
     "contacts": ("contacts at closest approach", "1"),
-    "contact_fraction": ("contact fraction at closest approach", "1"),
     "dissipated_energy": ("energy lost in the cycle", "J"),
     "avalanche": ("contacts in the largest avalanche, 1 where all are independent", "1"),
     "marked": ("steps at which contacts are too near each other for a coupling in pairs", "1"),
@@ -64,14 +63,14 @@ def cycle(ensemble: xr.Dataset, interaction: Any, steps: int) -> dict[str, float
     top = float(ensemble["height"].max()) + _CLEAR * PULL_OFF_LENGTH
     law = along(ensemble, np.linspace(top, -_DEPTH * PULL_OFF_LENGTH, steps), interaction)
     closest, marked = law.isel(step=steps - 1), law.get("marked_steps", 0.0)
-    numbers = [law["pull_off_force"], law["pull_off_contacts"], closest["contact_count"], closest["contact_fraction"],
-               law["dissipated_energy"][-1], law.get("avalanche_size_max", 1.0), marked]  # fmt: skip
+    numbers = [law["pull_off_force"], law["pull_off_contacts"], closest["contact_count"], law["dissipated_energy"][-1],
+               law.get("avalanche_size_max", 1.0), marked]  # fmt: skip
     return dict(zip(_CYCLE, map(float, numbers), strict=True))
 
 
 def along(ensemble: xr.Dataset, separation: np.ndarray, interaction: Any) -> xr.Dataset:
     """Return the law of falling separations [m], followed by the same that rise."""
-    variables = ["force", "contact_count", "contact_fraction", "energy", "dissipated_energy"]
+    variables = ["force", "contact_count", "energy", "dissipated_energy"]
     sticky = {"effective_modulus": MODULUS, "work": WORK, "adhesion": "jkr", "interaction": interaction}
     return law_of(ensemble, separation=separation, unload=True, variables=variables, **sticky)
 
@@ -89,14 +88,13 @@ def surfaces(quick: bool) -> list[Surface]:
 
 def measure(quick: bool) -> xr.Dataset:
     """Return the numbers of the cycles of all surfaces, with each model and for each realisation."""
-    asked = surfaces(quick)
-    found = []
+    asked, found = surfaces(quick), []
     for surface in asked:
         drawn = [surface.generate(r) for r in range(REALIZATIONS[quick])]
         cycles = [[cycle(each, interaction, STEPS) for each in drawn] for interaction in MODELS.values()]
         found.append({name: [[each[name] for each in row] for row in cycles] for name in _CYCLE})
     spread, asperities, distance = (list(each) for each in zip(*asked, strict=True))
-    result = xr.Dataset(
+    return xr.Dataset(
         in_cases(_CYCLE, found, "surface", "model", "realization"),
         {
             "model": list(MODELS),
@@ -104,21 +102,8 @@ def measure(quick: bool) -> xr.Dataset:
             "asperities": ("surface", asperities, named("number of asperities")),
             "distance": ("surface", distance, named("mean distance over the jump-on radius")),
         },
+        dict(zip(("usual_asperities", "usual_distance"), USUAL[quick], strict=True)),
     )
-    result["refinement"] = ((), _refinement(quick), named("change of the pull-off force with twice as many steps"))
-    return result
-
-
-def _refinement(quick: bool) -> float:
-    """Return the largest relative change of the pull-off force with twice as many steps, over spreads and models."""
-    count, distance = USUAL[quick]
-    changes = []
-    for spread in _COUNTED_SPREADS:
-        ensemble = Surface(spread, count, distance).generate(0)
-        for interaction in MODELS.values():
-            coarse, fine = (cycle(ensemble, interaction, steps)["pull_off_force"] for steps in (STEPS, 2 * STEPS))
-            changes.append(abs(coarse / fine - 1.0))
-    return max(changes)
 
 
 def change(result: xr.Dataset, name: str) -> xr.DataArray:
@@ -134,90 +119,58 @@ def beyond_pairs(result: xr.Dataset) -> xr.DataArray:
 def draw(result: xr.Dataset) -> Figure:
     """Draw the change of the pull-off over distance and number of asperities, and the largest avalanches."""
     figure, row = panels(12.5, 4.3, 3)
-    dense, (at_usual_distance, at_usual_number) = beyond_pairs(result).to_numpy(), _series(result)
-    pull_off, ylabel = 100.0 * change(result, "pull_off_force"), "change of the pull-off force by coupling [%]"
-    distance, count = (float(result[name].to_numpy()[among][0]) for name, among in (
-        ("distance", at_usual_distance), ("asperities", at_usual_number)
-    ))  # fmt: skip
-    size, beside = result["avalanche"].sel(model="coupled"), f"distance {distance:g} jump-on radii"
-    usual = f"{count:g} asperities"
-    for panel, over, values, among, words in (
-        (
-            row[0],
-            "distance",
-            pull_off,
-            at_usual_number,
-            ("mean distance over jump-on radius", ylabel, usual),
-        ),
-        (row[1], "asperities", pull_off, at_usual_distance, ("asperities", ylabel, beside)),
-        (row[2], "asperities", size, at_usual_distance, ("asperities", "contacts in the largest avalanche", beside)),
-    ):
-        _points(panel, result[over], values, dense, among)
-        ticks = np.unique(result[over].to_numpy()[among])
-        panel.set(xscale="log", **dict(zip(("xlabel", "ylabel", "title"), words, strict=True)))
-        panel.set_xticks(ticks, [f"{value:g}" for value in ticks])
-        panel.minorticks_off()
+    count, distance = result.attrs["usual_asperities"], result.attrs["usual_distance"]
+    at_usual_number = result["asperities"] == count
+    at_usual_distance = (result["distance"] == distance) & result["spread"].isin(_COUNTED_SPREADS)
+    result = result.assign_coords(dense=("surface", beyond_pairs(result).to_numpy()))
+    force, avalanche = 100.0 * change(result, "pull_off_force"), result["avalanche"].sel(model="coupled")
+    ylabel, beside = "change of the pull-off force by coupling [%]", f"distance {distance:g} jump-on radii"
+    _points(row[0], force, "distance", at_usual_number)
+    row[0].set(xlabel="mean distance over jump-on radius", ylabel=ylabel, title=f"{count:g} asperities")
+    _points(row[1], force, "asperities", at_usual_distance)
+    row[1].set(xlabel="asperities", ylabel=ylabel, title=beside)
+    _points(row[2], avalanche, "asperities", at_usual_distance)
+    row[2].set(xlabel="asperities", ylabel="contacts in the largest avalanche", title=beside)
     for panel in row[:2]:
         panel.axhline(0.0, color="0.6", lw=0.8)
-    if dense[at_usual_number].any():
-        row[0].plot([], [], "o", color="0.4", mfc="white", label="too dense for pairs")
     row[0].legend(fontsize=8, title="height spread over pull-off length", title_fontsize=8)
     return figure
 
 
-def _series(result: xr.Dataset) -> tuple[np.ndarray, np.ndarray]:
-    """Return which surfaces have the usual distance with several numbers of asperities, and which the usual number."""
-    spread, distance, asperities = (result[name].to_numpy() for name in ("spread", "distance", "asperities"))
-    odd = asperities != np.bincount(asperities.astype(int)).argmax()
-    return np.isin(spread, spread[odd]) & (distance == distance[odd][0]), ~odd
-
-
-def _points(panel: Axes, x: xr.DataArray, values: xr.DataArray, dense: np.ndarray, among: np.ndarray) -> None:
-    """Draw mean and standard deviation over the realisations, a colour for each height spread."""
-    spreads = np.unique(x["spread"].to_numpy()[among])
+def _points(panel: Axes, values: xr.DataArray, over: str, among: xr.DataArray) -> None:
+    """Draw mean and standard deviation over the realisations, a colour for each height spread; hollow where dense."""
+    spreads = np.unique(values["spread"].to_numpy()[among])
     for number, spread in enumerate(spreads.tolist()):
-        own = np.flatnonzero(among & (x["spread"].to_numpy() == spread))
-        own = own[np.argsort(x.to_numpy()[own])]
-        beside = 1.025 ** (number - 0.5 * (spreads.size - 1))  # that bars do not cover each other
-        at, mean = beside * x.to_numpy()[own], values.mean("realization").to_numpy()[own]
-        scatter, colour = values.std("realization", ddof=1).to_numpy()[own], _COLOURS[spread]
-        panel.errorbar(at, mean, scatter, color=colour, lw=1.2, capsize=2.5, label=f"{spread:g}")
-        for open_ones, fill in ((False, colour), (True, "white")):
-            few = dense[own] == open_ones
-            panel.plot(at[few], mean[few], "o", color=colour, mfc=fill, ms=5.5, zorder=3)
+        own = values.isel(surface=np.flatnonzero(among & (values["spread"] == spread))).sortby(over)
+        at = 1.025 ** (number - 0.5 * (spreads.size - 1)) * own[over]  # that bars do not cover each other
+        mean, colour = own.mean("realization"), _COLOURS[spread]
+        style: dict[str, Any] = {"fmt": "o-", "color": colour, "ms": 5.5, "lw": 1.2, "capsize": 2.5}
+        panel.errorbar(at, mean, own.std("realization", ddof=1), label=f"{spread:g}", **style)
+        hollow = own["dense"].to_numpy()
+        panel.plot(at[hollow], mean[hollow], "o", color=colour, mfc="white", ms=5.5, zorder=3)
+    ticks = np.unique(values[over].to_numpy()[among])
+    panel.set_xscale("log")
+    panel.set_xticks(ticks, [f"{value:g}" for value in ticks])
+    panel.minorticks_off()
 
 
 def report(result: xr.Dataset) -> str:
     """Return a table of all surfaces, and how it was measured."""
-    pull_off, lost, dense = change(result, "pull_off_force"), change(result, "dissipated_energy"), beyond_pairs(result)
-    mean, rows = result.mean("realization"), []
-    for i in range(result.sizes["surface"]):
-        (alone, coupled), count = (mean.isel(surface=i).sel(model=name) for name in MODELS), float(result.asperities[i])
-        force = (f"{-float(one.pull_off_force) / count / PULL_OFF_FORCE:.3f}" for one in (alone, coupled))
-        rows.append([
-            f"{float(result.spread[i]):g}", f"{count:g}", f"{float(result.distance[i]):g}{' *' if dense[i] else ''}",
-            *force, _percent(pull_off[i]),
-            f"{float(alone.dissipated_energy) / count / (WORK * JUMP_ON_RADIUS**2):.3f}", _percent(lost[i]),
-            f"{float(alone.contacts):.1f}, {float(coupled.contacts):.1f}",
-            f"{float(coupled.avalanche):.1f} ({float(coupled.avalanche) / count:.1%})",
-            f"{float(coupled.contact_fraction):.1%}",
-        ])  # fmt: skip
+    force, lost, dense = change(result, "pull_off_force"), change(result, "dissipated_energy"), beyond_pairs(result)
+    size, rows = result["avalanche"].sel(model="coupled").mean("realization"), []
+    for i, own in enumerate(each_of(result, "surface")):
+        distance = f"{float(own['distance']):g}{' *' if dense[i] else ''}"
+        labels = [f"{float(own['spread']):g}", f"{float(own['asperities']):g}", distance]
+        rows.append([*labels, _percent(force[i]), _percent(lost[i]), f"{float(size[i]):.1f}"])
     length, radius = (f"{1e6 * each:.3g} µm" for each in (PULL_OFF_LENGTH, JUMP_ON_RADIUS))
-    head = [
-        "spread", "asperities", "distance", "pull-off", "coupled", "change", "dissipated", "change",
-        "contacts, coupled", "largest avalanche", "contact fraction",
-    ]  # fmt: skip
+    head = ["spread", "asperities", "distance", "pull-off force", "dissipated energy", "largest avalanche"]
     return f"""The flat goes down to the same separation with both models, 1.5 pull-off lengths of {length} below
 the mean height, and up until all contacts have parted. Separations count from the deformed mean plane. Height spreads
-are in pull-off lengths, distances in jump-on radii of {radius}. Forces are per asperity over 1.5 pi w R of one
-alone, energies of the cycle per asperity over w times the square of the jump-on radius. Changes are between the
-models on the same surface, mean ± standard deviation over {result.sizes["realization"]} realisations. Contacts
-and contact fraction are those at closest approach, the largest avalanche is of making or of parting, and *
-stands where steps are marked: too dense for a coupling in pairs.
+are in pull-off lengths, distances in jump-on radii of {radius}. Changes are between the models on the same surface,
+mean ± standard deviation over {result.sizes["realization"]} realisations. The largest avalanche is of making or of
+parting, and * stands where steps are marked: too dense for a coupling in pairs.
 
 {table(head, rows)}
-
-With twice as many steps the pull-off force changes by {float(result["refinement"]):.1g}.
 """
 
 

@@ -25,15 +25,10 @@ _COLOURS = dict(zip(METHODS, ("0.55", "#56b4e9", "#0072b2", "#d55e00", "k"), str
 _MARKERS = dict(zip(METHODS, "voDs ", strict=True))
 
 
-def surface(hurst: float) -> dict[str, Any]:
-    """Return the section [asperities] of maps of a Hurst exponent."""
-    waves = {"hurst": hurst, "long_wave": _LONG, "short_wave": _SHORT, "rms_slope": _SLOPE}
-    return {"source": "spectrum", "patch": _SIDE, **waves}
-
-
 def laws(hurst: float, realizations: int) -> dict[str, xr.Dataset]:
     """Return forces over realisations and steps by each method; boundary elements press the maps of the hills."""
-    section = surface(hurst)
+    waves = {"hurst": hurst, "long_wave": _LONG, "short_wave": _SHORT, "rms_slope": _SLOPE}
+    section = {"source": "spectrum", "patch": _SIDE, **waves}
     moments = SpectrumAsperities.model_validate(section).summits.moments
     nayak = {"source": "nayak", "patch": _SIDE, **moments._asdict()}
 
@@ -100,9 +95,9 @@ def draw(result: xr.Dataset) -> Figure:
     """Draw the error of the mean force of each source over the contact fraction."""
     off, error = means(result)
     figure = blank(12.0, 4.4)
-    panels = figure.subplots(1, result.sizes["hurst"], sharey=True)
+    row = figure.subplots(1, result.sizes["hurst"], sharey=True)
     fraction = 100.0 * result["contact_fraction"].sel(solver=METHODS[-1]).mean("realization")
-    for panel, hurst in zip(panels, result["hurst"].to_numpy(), strict=True):
+    for panel, hurst in zip(row, result["hurst"].to_numpy(), strict=True):
         for method in METHODS[:-1]:
             at = {"hurst": hurst, "solver": method}
             style: dict[str, Any] = {"color": _COLOURS[method], "marker": _MARKERS[method], "label": method}
@@ -110,8 +105,8 @@ def draw(result: xr.Dataset) -> Figure:
             panel.errorbar(*(each.to_numpy() for each in drawn), capsize=3.0, **style)
         panel.axhline(0.0, color="k", lw=0.8)
         panel.set(xscale="log", xlabel="contact fraction [%]", title=f"Hurst exponent {hurst:g}")
-    panels[0].set_ylabel("mean force over boundary elements, less 1 [%]")
-    figure.legend(*panels[0].get_legend_handles_labels(), loc="outside lower center", ncols=4)
+    row[0].set_ylabel("mean force over boundary elements, less 1 [%]")
+    figure.legend(*row[0].get_legend_handles_labels(), loc="outside lower center", ncols=4)
     return figure
 
 

@@ -36,7 +36,7 @@ class Study(NamedTuple):
     name: str  # name of its command and of its files
     title: str
     measure: Callable[[bool], xr.Dataset]  # return all numbers; a reduced form, in seconds, where the argument is true
-    draw: Draw | dict[str, Draw]  # the picture NAME.png, or several pictures by their names
+    draw: Draw | dict[str, Draw]  # the picture NAME.png, or pictures by their names
     report: Callable[[xr.Dataset], str]  # return a few sentences and tables in Markdown
     reduced: str  # part of the full form that the reduced one has
 
@@ -49,12 +49,14 @@ class Study(NamedTuple):
             provenance(self.title, f"study.py {self.name}"), **{"comment": words} if quick else {}
         )
         write_netcdf(Labelled.of(result), output / f"{self.name}.nc")
-        for name, draw in (self.draw if isinstance(self.draw, dict) else {self.name: self.draw}).items():
+        pictures = self.draw if isinstance(self.draw, dict) else {self.name: self.draw}
+        for name, draw in pictures.items():
             with replace_atomically(output / f"{name}.png") as temporary:
                 figure = draw(result)
                 figure.text(0.5, 0.0, words, ha="center", va="top", color="tab:red")  # below all that is drawn
                 figure.savefig(temporary, dpi=160, format="png", bbox_inches="tight" if quick else None)
-        return "\n\n".join(filter(None, (f"## {self.title}", words, self.report(result).strip()))) + "\n"
+        links = " ".join(f"![{name}]({name}.png)" for name in pictures)
+        return "\n\n".join(filter(None, (f"## {self.title}", words, self.report(result).strip(), links))) + "\n"
 
 
 def in_two_processes(function: Callable[[Any], Any], items: Iterable[Any], chunksize: int = 1) -> list[Any]:

@@ -17,7 +17,7 @@ def test_hills_of_one_map_pull_off_nearer_to_elements_than_summits() -> None:
     case = QUICK[1]
     adhesive = Adhesive(case)
     path = adhesive.path()
-    true = adhesive.by_elements(path, case.points, adhesive.reach).force.min()
+    true = adhesive.by_elements(path, case.points).force.min()
     hills, summits = (adhesive.law(each, path).force.min() / true for each in (adhesive.hills, adhesive.summits))
     assert abs(hills - 1.0) < 0.13
     assert abs(hills - 1.0) < abs(summits - 1.0)

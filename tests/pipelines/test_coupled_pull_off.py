@@ -11,6 +11,7 @@ from studies.coupled_pull_off import (
     PULL_OFF_FORCE,
     PULL_OFF_LENGTH,
     RADIUS,
+    STEPS,
     WORK,
     Surface,
     along,
@@ -83,8 +84,11 @@ def test_coupling_fades_with_the_distance() -> None:
 
 
 @pytest.mark.large
-def test_the_pull_off_is_located_between_the_steps(result: xr.Dataset) -> None:
-    assert float(result["refinement"]) < 1e-6
+@pytest.mark.parametrize("model", MODELS)
+def test_the_pull_off_is_located_between_the_steps(model: str) -> None:
+    ensemble = Surface(0.3, 25, 10.0).generate(0)
+    coarse, fine = (cycle(ensemble, MODELS[model], steps)["pull_off_force"] for steps in (STEPS, 2 * STEPS))
+    assert coarse == pytest.approx(fine, rel=1e-6)
 
 
 @pytest.mark.parametrize("model", MODELS)

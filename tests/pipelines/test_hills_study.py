@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 from carried_out import CarriedOut, carried_out
 from studies.comparison import rms
-from studies.hills import METHODS, PERSSON, STUDY, errors_of, groups, measure_maps, within
+from studies.hills import METHODS, PERSSON, STUDY, dataset_of, errors_of, groups, press, within
 from studies.hills.convergence import FINEST, SCALES, by_noise, by_points, by_scales
 from studies.hills.maps import QUANTITIES, QUICK, MapCase, by_elements, by_persson, square
-from studies.hills.measured_maps import FILES, FOLDER, FREE_METHODS, errors_on_files, measure_files, report_files
+from studies.hills.measured_maps import FILES, FOLDER, press_files
 
 SHARED = Path(__file__).parents[3] / "shared" / "surfaces"
 
@@ -29,7 +29,7 @@ def test_a_map_is_the_same_on_every_grid() -> None:
 
 
 def test_hills_of_one_map_are_better_than_summits() -> None:
-    result = measure_maps(QUICK[:1])
+    result = dataset_of([("isotropic", press(QUICK[0]))])
     for quantity in ("force", "stiffness"):
         errors = errors_of(result, quantity)
         hills, summits = (rms(errors.sel(solver=name)) for name in ("hills", "summits in pairs"))
@@ -121,7 +121,7 @@ def test_the_elements_that_all_is_held_against_have_converged(studied: CarriedOu
 @pytest.mark.large
 def test_it_says_that_measured_maps_are_left_out(studied: CarriedOut) -> None:
     assert FOLDER in studied.text
-    assert "surface" not in studied.result.dims
+    assert set(groups(studied.result)) == {"isotropic", "4:1"}
 
 
 @pytest.mark.large
@@ -129,10 +129,8 @@ def test_it_says_that_measured_maps_are_left_out(studied: CarriedOut) -> None:
 def test_a_measured_map(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (tmp_path / FILES[0]).write_bytes((SHARED / FILES[0]).read_bytes())
     monkeypatch.setenv(FOLDER, str(tmp_path))
-    found = measure_files(quick=True)
-    assert list(found["surface"].to_numpy()) == [FILES[0]]
-    errors = errors_on_files(found)
-    assert rms(errors.sel(surface_solver="hills")) < 0.2 * rms(errors.sel(surface_solver="summits in pairs"))
-    text = report_files(found)
-    assert all(f"| {FILES[0]} | {method} |" in text for method in FREE_METHODS)
-    assert "points a wavelength" in text
+    ((name, pressed),) = press_files(quick=True)
+    assert name.startswith(FILES[0])
+    assert name.endswith("points a wavelength")
+    errors = errors_of(dataset_of([(name, pressed)]))
+    assert rms(errors.sel(solver="hills")) < 0.2 * rms(errors.sel(solver="summits in pairs"))

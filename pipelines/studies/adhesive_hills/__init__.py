@@ -6,14 +6,12 @@ import numpy as np
 import xarray as xr
 
 from studies.adhesive_hills.cases import CASES, FEW, MAPS, QUICK, Adhesive, Case, measure_stated, report_stated
-from studies.comparison import in_cases, panels, percent, rms
-from studies.hills.maps import SIDE
+from studies.comparison import each_of, in_cases, panels, percent, rms
 from studies.study import Axes, Figure, Study, table
 
 METHODS = ("summits", "summits in pairs", "hills", "hills in pairs", "hills, Dugdale")
-ELEMENTS = ("elements", "coarse grid", "longer range")
+ELEMENTS = ("elements", "coarse grid")
 _COARSE = 2.0 / 3.0  # share of the points of a grid
-LONGER = 1.5  # the longer range over the range
 _LEAST = 0.003  # contact fraction of boundary elements from which on steps are compared
 _COLOURS = dict(zip(METHODS, ("0.6", "#e69f00", "#56b4e9", "#0072b2", "#d55e00"), strict=True))
 _MARKERS = dict(zip(METHODS, "vDosX", strict=True))
@@ -24,7 +22,6 @@ _COLUMNS = {
     "anisotropy": ("length of the waves along over across", "1"),
     "jump_on": ("jump-on radius over the wavelength", "1"),
     "stretch": ("square of the jump-on radius over the radius", "m"),
-    "cells": ("E* w/strength^2 over the spacing of the grid", "1"),
 }
 _NUMBERS = {
     "force": ("force over the effective modulus", "m2"),
@@ -35,16 +32,15 @@ _NUMBERS = {
 def press(case: Case) -> dict[str, Any]:
     """Return the numbers of a case, the laws by ``ELEMENTS`` and then by ``METHODS``."""
     adhesive, points = Adhesive(case), case.points
-    separation, reach, hills, summits = adhesive.path(), adhesive.reach, adhesive.hills, adhesive.summits
+    separation, hills, summits = adhesive.path(), adhesive.hills, adhesive.summits
     found = [
-        adhesive.by_elements(separation, points, reach),
-        adhesive.by_elements(separation, _COARSE * points, reach),
-        adhesive.by_elements(separation, _COARSE * points, LONGER * reach),
+        adhesive.by_elements(separation, points),
+        adhesive.by_elements(separation, _COARSE * points),
         adhesive.law(summits, separation),
         adhesive.law(summits, separation, interaction="pairwise"),
         adhesive.law(hills, separation),
         adhesive.law(hills, separation, interaction="pairwise"),
-        adhesive.law(hills, separation, adhesion="dugdale", strength=adhesive.work / reach),
+        adhesive.law(hills, separation, adhesion="dugdale", strength=adhesive.work / adhesive.reach),
     ]
     return {
         **{name: [getattr(law, name) for law in found] for name in _NUMBERS},
@@ -52,7 +48,6 @@ def press(case: Case) -> dict[str, Any]:
         "separation": separation,
         "jump_on": case.jump_on,
         "stretch": adhesive.stretch,
-        "cells": adhesive.cohesive_zone * case.points / SIDE,
     }
 
 
@@ -71,7 +66,6 @@ class Judged(NamedTuple):
 
     loading: float  # r.m.s. of the force over its largest size
     unloading: float  # on the way back
-    area: float  # and of the contact area over the largest, both ways
     pull_off: float  # the largest tension of unloading over that of boundary elements
     loss: float
     """The energy lost over the cycle, over the pull-off force of boundary elements times the stretch of a contact."""
@@ -82,13 +76,11 @@ def judge(case: xr.Dataset, source: str) -> Judged:
     separation = case["separation"].to_numpy()
     turn = separation.size // 2
     true, found = (case["force"].sel(source=name).to_numpy() for name in ("elements", source))
-    true_area, area = (case["contact_fraction"].sel(source=name).to_numpy() for name in ("elements", source))
-    compared = true_area >= _LEAST
+    compared = case["contact_fraction"].sel(source="elements").to_numpy() >= _LEAST
     off = (found - true) / np.abs(true).max()
     return Judged(
         loading=rms(off[: turn + 1][compared[: turn + 1]]),
         unloading=rms(off[turn:][compared[turn:]]),
-        area=rms((area - true_area)[compared] / true_area.max()),
         pull_off=float(found[turn:].min() / true[turn:].min()),
         loss=float(np.trapezoid(found, separation) / (true[turn:].min() * case["stretch"])),
     )
@@ -101,32 +93,22 @@ def name_of(case: xr.Dataset) -> str:
 
 
 def report(result: xr.Dataset) -> str:
-    """Return errors of each method by case, those of the elements, and where pairs end."""
-    rows, ends = [], []
-    for i in range(result.sizes["case"]):
-        case = result.isel(case=i)
-        true = case.sel(source="elements")
-        turn = case.sizes["step"] // 2
-        pulled = float(-true["force"][turn:].min() / abs(true["force"]).max())
-        most = percent(float(true["contact_fraction"].max()))
-        ends.append([name_of(case), most, f"{pulled:.2f}", f"{float(case['cells']):.1f}"])
+    """Return errors of each method by case, those of the elements, and how the stated ones do."""
+    rows = []
+    for case in each_of(result):
+        most = percent(float(case["contact_fraction"].sel(source="elements").max()))
         for source in (*METHODS, *ELEMENTS):
             found = judge(case, source)
-            errors = [percent(value, 0) for value in found[:3]]
-            rows.append([name_of(case), source, *errors, f"{found.pull_off:.2f}", f"{found.loss:.2f}"])
-    head = ["map, jump-on radius", "source", "loading", "unloading", "area", "pull-off", "loss"]
-    ends_head = ["map, jump-on radius", "largest contact", "pull-off over largest force", "zone over grid"]
-    return f"""Errors against adhesive boundary elements, r.m.s. from 0.3 % contact on, of the force and the area over
-their largest; pull-off force over that of boundary elements; energy lost in the cycle over the pull-off force of
+            errors = [percent(value, 0) for value in found[:2]]
+            rows.append([name_of(case), most, source, *errors, f"{found.pull_off:.2f}", f"{found.loss:.2f}"])
+    head = ["map, jump-on radius", "contact", "source", "loading", "unloading", "pull-off", "loss"]
+    return f"""Errors against adhesive boundary elements, r.m.s. from 0.3 % contact on, of the force over the
+largest; pull-off force over that of boundary elements; energy lost in the cycle over the pull-off force of
 boundary elements times the stretch of a contact, a0²/R. Maps by Hurst exponent, shortest wave over the side, and
-jump-on radius a0 over the wavelength. The Tabor number is 2; that of elements with the longer range, on the coarse
-grid, which has 2/3 of the points a side, is {2.0 / LONGER:.1f}:
+jump-on radius a0 over the wavelength; the largest contact fraction by elements. The Tabor number is 2; the coarse grid
+has 2/3 of the points a side:
 
 {table(head, rows)}
-
-The largest contact fraction by elements, and E* w/strength², which the grid must resolve, over its spacing:
-
-{table(ends_head, ends)}
 
 On how many maps `model_error` of hills in pairs, with the range given, is no less than their error against boundary
 elements, both over the largest force and at most 1: maps that its form is from, and maps drawn after it was settled
@@ -150,7 +132,7 @@ def _curves(panel: Axes, case: xr.Dataset, way: slice, title: str) -> None:
 
 def _pull_off(panel: Axes, result: xr.Dataset) -> None:
     """Draw the pull-off force of each method over that of boundary elements."""
-    cases = [result.isel(case=i) for i in range(result.sizes["case"])]
+    cases = each_of(result)
     for k, name in enumerate(METHODS):
         ratio = [judge(case, name).pull_off for case in cases]
         place = np.arange(len(cases)) + 0.12 * (k - 2)

@@ -9,7 +9,7 @@ import numpy as np
 import xarray as xr
 
 from roughmdr.ensemble.maps.summits import find_summits
-from studies.comparison import in_cases, panels, percent, rms
+from studies.comparison import cases_of, in_cases, panels, percent, rms
 from studies.hills.convergence import QUICK_TRIALS, TRIALS, draw_convergence, measure_convergence, report_convergence
 from studies.hills.grids import measure_grids, report_grids
 from studies.hills.maps import (
@@ -20,6 +20,7 @@ from studies.hills.maps import (
     POINTS,
     QUANTITIES,
     QUICK,
+    STIFFNESS_EACH,
     MapCase,
     Pressed,
     by_asperities,
@@ -29,32 +30,31 @@ from studies.hills.maps import (
     separations,
     square,
 )
-from studies.hills.measured_maps import measure_files, report_files
+from studies.hills.measured_maps import FILES, FOLDER, press_files
 from studies.study import Axes, Figure, Study, named, table, without_limits
 
 COARSE = (2, 3, 4)
 PERSSON = {"Persson, gamma 0.45": 0.45, "Persson, gamma 1": 1.0}
 """Factor gamma of the theory by the names of its methods, for isotropic maps."""
-METHODS = ("summits", "summits in pairs", "hills", *PERSSON, *(f"elements, {points} points" for points in COARSE))
+METHODS = ("summits", "summits in pairs", "hills", *(f"elements, {points} points" for points in COARSE), *PERSSON)
 RANGES = ((0.003, 0.01), (0.01, 0.05), (0.05, 0.2))
 """Ranges of the contact fraction over which errors are taken together."""
-_COLOURS = ("0.45", "#0072b2", "#d55e00", "#009e73", "#66c2a5", "#e5b8d4", "#cc79a7", "#7b3f61")
-_STYLES = dict(zip(METHODS, zip(_COLOURS, "vso^PDDD", strict=True), strict=True))
-_CURVES = METHODS[:4]  # methods whose errors are drawn over the contact fraction
+_COLOURS = ("0.45", "#0072b2", "#d55e00", "#e5b8d4", "#cc79a7", "#7b3f61", "#009e73", "#66c2a5")
+_STYLES = dict(zip(METHODS, zip(_COLOURS, "vsoDDD^P", strict=True), strict=True))
+_CURVES = (*METHODS[:3], METHODS[6])  # methods whose errors are drawn over the contact fraction
 
 
 def press(case: MapCase) -> list[Pressed]:
     """Return the solution of fine boundary elements, and then that of each method."""
     separation, surface = separations(case), square(case.height(POINTS))
-    unknown = np.full(separation.size, np.nan)
-    nothing = Pressed(unknown, unknown, unknown, np.nan)
+    persson = [by_persson(surface, separation, gamma) for gamma in PERSSON.values() if case.anisotropy == 1.0]
     return [
         by_elements(surface, separation),
         by_asperities(surface, separation, find_summits, None),
         by_asperities(surface, separation, find_summits, PAIRS),
         by_asperities(surface, separation, hills_of, PAIRS),
-        *(by_persson(surface, separation, gamma) if case.anisotropy == 1.0 else nothing for gamma in PERSSON.values()),
         *(by_elements(square(case.height(points)), separation) for points in COARSE),
+        *persson,
     ]
 
 
@@ -62,27 +62,29 @@ def measure(quick: bool) -> xr.Dataset:
     """Press all maps, or a few."""
     with without_limits():
         press(QUICK[0])  # compiles
-        parts = [measure_maps(QUICK if quick else [*ISOTROPIC, *ANISOTROPIC]), measure_convergence(quick)]
-        return xr.merge([*parts, measure_grids(quick), measure_files(quick)])
+        pressed = [
+            ("isotropic" if case.anisotropy == 1.0 else "4:1", press(case))
+            for case in (QUICK if quick else [*ISOTROPIC, *ANISOTROPIC])
+        ]
+        parts = [dataset_of(pressed + press_files(quick)), measure_convergence(quick), measure_grids(quick)]
+    return xr.merge(parts)
 
 
-def measure_maps(cases: list[MapCase]) -> xr.Dataset:
-    """Press maps by each method."""
+def dataset_of(pressed: list[tuple[str, list[Pressed]]]) -> xr.Dataset:
+    """Return the numbers of maps, by the name of their group; NaN of the last methods where there are fewer."""
     words = {
         "force": ("force over the effective modulus", "m2"),
         "contact_fraction": ("contact area over nominal area", "1"),
         "stiffness": ("-dF/dh over the effective modulus", "m"),
     }
     seconds = {"seconds": ("run time of force and area along a path", "s")}
-    pressed = [press(case) for case in cases]
-    numbers = [{name: [getattr(one, name) for one in each] for name in Pressed._fields} for each in pressed]
-    columns = dict(zip(MapCase._fields, zip(*cases, strict=True), strict=True))
+    numbers = [{name: [getattr(one, name) for one in each] for name in Pressed._fields} for _, each in pressed]
     return xr.Dataset(
         in_cases(words, numbers, "case", "solver", "fraction") | in_cases(seconds, numbers, "case", "solver"),
         {
             "solver": ["fine elements", *METHODS],
             "fraction": ("fraction", FRACTIONS, named("contact fraction of the separation, about")),
-            **{name: ("case", list(values)) for name, values in columns.items()},
+            "maps": ("case", [name for name, _ in pressed]),
         },
     )
 
@@ -100,55 +102,46 @@ def within(errors: xr.DataArray, share: tuple[float, float]) -> xr.DataArray:
 
 
 def groups(result: xr.Dataset) -> dict[str, xr.Dataset]:
-    """Return isotropic and anisotropic maps."""
-    ratio = result["anisotropy"].to_numpy()
-    found = {"isotropic": ratio == 1.0, "4:1": ratio > 1.0}
-    return {name: result.isel(case=np.flatnonzero(member)) for name, member in found.items() if member.any()}
+    """Return isotropic and anisotropic maps, and each that was measured."""
+    return {name: cases_of(result, maps=name) for name in dict.fromkeys(result["maps"].to_numpy().tolist())}
 
 
 def report(result: xr.Dataset) -> str:
     """Return errors and run times of each method, and what the errors of hills hang on."""
-    rows, ranges = [], []
+    rows = []
     for (name, own), method in product(groups(result).items(), METHODS):
-        force, area, stiffness = (errors_of(own, quantity).sel(solver=method).to_numpy() for quantity in QUANTITIES)
-        if not np.isfinite(force).any():
-            continue
-        seconds, of_true = (own["seconds"].sel(solver=each).to_numpy() for each in (method, "fine elements"))
-        rows.append([
-            name, method, percent(rms(force)), f"{100 * np.nanmean(force):+.1f} %",
-            percent(float(np.nanquantile(np.abs(force), 0.9))), percent(rms(area), 0), percent(rms(stiffness)),
-            percent(float(np.isnan(force).mean()), 0), f"{1e3 * np.median(seconds):.0f} ms",
-            f"{np.median(seconds / of_true):.2f}",
-        ])  # fmt: skip
-        errors = errors_of(own).sel(solver=method)
-        ranges.append([name, method, *(percent(rms(within(errors, each))) for each in RANGES)])
-    head = ["maps", "method", "force, rms", "mean", "90 % within", "area, rms", "stiffness, rms", "no answer", "a path"]
-    counts = ", ".join(f"{own.sizes['case']} {name}" for name, own in groups(result).items())
-    stiffnesses = int(result["stiffness"].sel(solver="fine elements").notnull().any("case").sum())
-    in_words = [f"{100 * low:g} to {100 * high:g} %" for low, high in RANGES]
-    return f"""{counts} maps, {result.sizes["fraction"]} separations from 0.3 to 20 % contact each, against boundary
-elements with {POINTS} points a shortest wave. The stiffness -dF/dh is held against theirs at {stiffnesses} of the
-separations, and is no part of the run times.
+        force, area, stiffness = (errors_of(own, quantity).sel(solver=method) for quantity in QUANTITIES)
+        if np.isfinite(force).any():
+            rows.append([
+                name, method, percent(rms(force)), f"{100.0 * float(force.mean()):+.1f} %",
+                percent(float(np.nanquantile(np.abs(force), 0.9))),
+                *(percent(rms(within(force, each))) for each in RANGES),
+                percent(float(force["fraction"].where(force.notnull().any("case")).max()), 0),
+                percent(rms(area), 0), percent(rms(stiffness)),
+                f"{1e3 * float(own['seconds'].sel(solver=method).median()):.0f} ms",
+            ])  # fmt: skip
+    ranges = [f"{100 * low:g} to {100 * high:g} %" for low, high in RANGES]
+    head = ["maps", "method", "force, rms", "mean", "90 % within", *ranges, "answers up to", "area, rms",
+            "stiffness, rms", "a path"]  # fmt: skip
+    counts = "; ".join(f"{own.sizes['case']} {name}" for name, own in groups(result).items())
+    return f"""Maps: {counts}. They are pressed at {result.sizes["fraction"]} separations from 0.3 to 20 % contact, and
+held against boundary elements with {POINTS} points a shortest wave; errors by contact fraction are of the force, r.m.s.
+The stiffness -dF/dh is held against theirs at every {STIFFNESS_EACH}th separation, and is no part of the run times.
+Measured maps are pressed where the environment variable {FOLDER} names a folder with {" or ".join(FILES)}:
+squares from the middle, against boundary elements of a free half-space on the same points. Errors are those of the
+forces of all cells, those at the border too, where summits beyond it are missing.
 
-{table([*head, "of fine"], rows)}
-
-The force by contact fraction, r.m.s.:
-
-{table(["maps", "method", *in_words], ranges)}
+{table(head, rows)}
 
 {report_convergence(result)}
 
 {report_grids(result)}
-
-{report_files(result)}
 """
 
 
 def draw(result: xr.Dataset) -> Figure:
-    """Draw the errors of the force over the contact fraction, and over the run time."""
-    from matplotlib.lines import Line2D
-
-    parts = groups(result)
+    """Draw the errors of the force on Gaussian maps over the contact fraction, and over the run time."""
+    parts = {name: own for name, own in groups(result).items() if name in ("isotropic", "4:1")}
     figure, row = panels(4.6 * (len(parts) + 1), 5.0, len(parts) + 1)
     for panel, (name, own) in zip(row, parts.items(), strict=False):
         _draw_errors(panel, own)
@@ -157,12 +150,10 @@ def draw(result: xr.Dataset) -> Figure:
     for method, (colour, marker) in _STYLES.items():
         seconds = own["seconds"].sel(solver=method).to_numpy()
         by_case = [100.0 * rms(case) for case in errors_of(own).sel(solver=method).to_numpy()]
-        panel.loglog(1e3 * seconds, by_case, marker, color=colour, ms=5)
+        panel.loglog(1e3 * seconds, by_case, marker, color=colour, ms=5, label=method)
     panel.set(xlabel="run time of nine separations [ms]", ylabel="r.m.s. error of the force [%]")
     panel.set_title("isotropic maps, one point each")
-    handles = [Line2D([], [], color=colour, marker=marker, lw=2.0 * (method in _CURVES), ms=5)
-               for method, (colour, marker) in _STYLES.items()]  # fmt: skip
-    figure.legend(handles, METHODS, loc="outside lower center", ncols=4, fontsize=9)
+    figure.legend(*panel.get_legend_handles_labels(), loc="outside lower center", ncols=4, fontsize=9)
     return figure
 
 

@@ -23,14 +23,17 @@ SCALES = (5, 10, 20, 40)
 NOISE = (0.01, 0.03, 0.1)  # white, r.m.s. over the r.m.s. height
 ASPERITIES = {"summits in pairs": find_summits, "hills": hills_of}
 _OVER = {
-    "trial_force": ((), ("force of fine boundary elements over E*", "m2")),
-    "trial_force_finest_grid": ((), ("force of the hills of the finest grid over E*", "m2")),
-    "trial_force_by_points": (("points",), ("force of hills over E*", "m2")),
-    "trial_force_by_scales": (("scales",), ("force of hills over E*", "m2")),
-    "trial_force_by_noise": (("asperities", "noise"), ("force of asperities in pairs over E*", "m2")),
-    "trial_elements": (("grid", "quantity"), ("force [m2], contact fraction and stiffness [m] of elements", "E*")),
+    "trial_force": (("fraction",), ("force of fine boundary elements over E*", "m2")),
+    "trial_force_finest_grid": (("fraction",), ("force of the hills of the finest grid over E*", "m2")),
+    "trial_force_by_points": (("points", "fraction"), ("force of hills over E*", "m2")),
+    "trial_force_by_scales": (("scales", "fraction"), ("force of hills over E*", "m2")),
+    "trial_force_by_noise": (("asperities", "noise", "fraction"), ("force of asperities in pairs over E*", "m2")),
+    "trial_elements": (
+        ("grid", "quantity", "fraction"), ("force [m2], contact fraction and stiffness [m] of elements", "E*"),
+    ),
+    "resolution_error": (("points",), ("share of the force that the hills of a grid say they lack", "1")),
 }  # fmt: skip
-"""Dimensions, besides the map and the contact fraction, and words of the numbers of a map."""
+"""Dimensions, besides the map, and words of the numbers of a map."""
 
 
 def measure_convergence(quick: bool) -> xr.Dataset:
@@ -40,10 +43,9 @@ def measure_convergence(quick: bool) -> xr.Dataset:
     measured = [_measure(case, finest_elements) for case in trials]
     numbers: dict[str, Variable] = {}
     for name, (dims, words) in _OVER.items():
-        numbers |= in_cases({name: words}, measured, "trial", *dims, "fraction")
-    stated = {"resolution_error": ("share of the force that the hills of a grid say they lack", "1")}
+        numbers |= in_cases({name: words}, measured, "trial", *dims)
     return xr.Dataset(
-        numbers | in_cases(stated, measured, "trial", "points"),
+        numbers,
         {
             "points": ("points", list(GRIDS), named("points a shortest wave")),
             "scales": ("scales", list(SCALES), named("contact radii of a hill")),
@@ -52,7 +54,6 @@ def measure_convergence(quick: bool) -> xr.Dataset:
             "grid": ("grid", [POINTS, finest_elements], named("points a shortest wave of boundary elements")),
             "quantity": list(WORDS),
             "trial_hurst": ("trial", [case.hurst for case in trials]),
-            "trial_bandwidth": ("trial", [case.bandwidth for case in trials]),
         },
     )
 

@@ -1,6 +1,5 @@
 """Adhesive asperities by models and by boundary elements on two grids, along the same path."""
 
-from functools import partial
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -8,13 +7,12 @@ import xarray as xr
 from oracles.adhesive_elements import AdhesiveMap
 
 from roughmdr.numerics.arguments import Floats
-from studies.comparison import cases_of, in_cases, panels
-from studies.study import Axes, Figure, Study, table, timed
+from studies.comparison import cases_of, each_of, in_cases, panels
+from studies.study import Axes, Figure, Study, table
 from studies.versus_adhesive_bem.cases import DETACHED, MODELS, WORK, Case, law
-from studies.versus_bem.ensembles import distances, height_map
+from studies.versus_bem.ensembles import height_map
 
-_LABELS = {"independent": "independent", "first": "pairs, order 1", "second": "pairs, order 2"}
-_COLOURS = {"independent": "0.6", "first": "#1b6ca8", "second": "#c8553d"}
+_COLOURS = {"independent": "0.6", "order 2": "#c8553d"}
 _SHOWN = 4.0  # Tabor number of the curves, or that next to it
 CASES = (
     Case(1, 8.0, 2.0, 192),
@@ -30,7 +28,6 @@ CASES = (
     Case(9, 5.0, 2.0, 384, 2),
 )
 QUICK = (Case(1, 8.0, 2.0, 144, step=0.08), Case(4, 5.0, 2.0, 192, step=0.08))
-SOURCES = (*MODELS, "bem", "coarse")  # they give force, area and count: the models, and boundary elements on both grids
 _QUANTITIES = {
     "force": ("force over E* a0^3/R", "1"),
     "area": ("contact area over a0^2; of boundary elements the mean of those closed and within the range", "1"),
@@ -39,9 +36,7 @@ _QUANTITIES = {
 _COLUMNS = {
     "asperities": ("asperities in the patch", "1"),
     "spacing": ("mean spacing over a0", "1"),
-    "nearest": ("least distance over a0", "1"),
     "tabor": ("Tabor number of the mean radius", "1"),
-    "cells": ("range over the spacing of the grid", "1"),
 }
 
 
@@ -61,21 +56,17 @@ def by_elements(case: Case, ensemble: xr.Dataset, separation: Floats, points: in
 
 
 def compare(case: Case) -> dict[str, Any]:
-    """Return force, area and count by each source along the path of a case, with the run times of the path [s]."""
+    """Return force, area and count by each source along the path of a case."""
     ensemble = case.generate()
     separation = case.separations(ensemble)
-    sources = [partial(law, ensemble, separation, interaction) for interaction in MODELS.values()]
-    sources += [partial(by_elements, case, ensemble, separation, points) for points in (case.points, case.coarse)]
-    laws, seconds = zip(*map(timed, sources), strict=True)
+    laws = [law(ensemble, separation, interaction) for interaction in MODELS.values()]
+    laws += [by_elements(case, ensemble, separation, points) for points in (case.points, case.coarse)]
     return {
         **{name: [each[name] for each in laws] for name in _QUANTITIES},
         "separation": separation - float(ensemble["height"].max()),
-        "seconds": seconds,
         "asperities": case.asperities,
         "spacing": case.spacing,
-        "nearest": float(distances(ensemble).min()),
         "tabor": case.tabor,
-        "cells": case.reach * case.points / case.size,
     }
 
 
@@ -84,10 +75,8 @@ def measure(quick: bool) -> xr.Dataset:
     compared = [compare(case) for case in (QUICK if quick else CASES)]
     along = {"separation": ("separation from the highest asperity over a0^2/R", "1")}
     return xr.Dataset(
-        in_cases(_QUANTITIES, compared, "case", "source", "step")
-        | in_cases(along, compared, "case", "step")
-        | in_cases({"seconds": ("run time of a path", "s")}, compared, "case", "source"),
-        {"source": list(SOURCES), **in_cases(_COLUMNS, compared, "case")},
+        in_cases(_QUANTITIES, compared, "case", "source", "step") | in_cases(along, compared, "case", "step"),
+        {"source": [*MODELS, "elements", "coarse grid"], **in_cases(_COLUMNS, compared, "case")},
     )
 
 
@@ -97,58 +86,35 @@ class Judged(NamedTuple):
     loading: float
     """The largest of the force over the largest tension, at steps where as many are in contact, and not none."""
     unloading: float
-    area: float  # the largest of the contact area over the largest area, at such steps
     pull_off: float  # relative error of the largest tension on unloading
     on: float
     """Mean lag of the jumps on over the stretch at which one alone lets go; > 0 where it jumps on at a smaller gap."""
-    off: float  # the lag at letting go; > 0 where it lets go at a smaller gap
-    apart: float  # share of the steps in contact where not as many are in contact
-
-
-def turning(separation: Floats) -> int:
-    """Return the step at which the path turns."""
-    return int(np.nanargmin(separation))
-
-
-def jumps(count: Floats, separation: Floats) -> tuple[Floats, Floats]:
-    """Return the separations at which one more and one less comes into contact, each midway between two steps."""
-    turn = turning(separation)
-    change = np.diff(count, prepend=0.0)
-    middle = 0.5 * (separation + np.roll(separation, 1))
-    on, off = (np.maximum(sign * part, 0).astype(int)
-               for sign, part in ((1, change[: turn + 1]), (-1, change[turn + 1 :])))  # fmt: skip
-    return np.repeat(middle[: turn + 1], on), np.repeat(middle[turn + 1 :], off)
 
 
 def known(case: xr.Dataset) -> tuple[xr.Dataset, Floats, int]:
     """Return a case without what lies beyond the end of its path, the separations, and the step at which it turns."""
     case = case.dropna("step", subset=["separation"])
     separation = case["separation"].to_numpy()
-    return case, separation, turning(separation)
+    return case, separation, int(np.argmin(separation))
 
 
 def judge(case: xr.Dataset, source: str) -> Judged:
     """Judge a source against boundary elements on the fine grid."""
     case, separation, turn = known(case)
-    found, true = ({name: case[name].sel(source=each).to_numpy() for name in _QUANTITIES} for each in (source, "bem"))
-    tension = -true["force"][turn:].min()
-    alike, contact = found["count"] == true["count"], (found["count"] > 0) | (true["count"] > 0)
-    force, area = (
-        np.where(alike & contact, np.abs(found[name] - true[name]), 0.0) / scale
-        for name, scale in (("force", tension), ("area", true["area"].max()))
+    (force, count), (true, true_count) = (
+        [case[name].sel(source=each).to_numpy() for name in ("force", "count")] for each in (source, "elements")
     )
-    lags = [
-        float(np.mean(np.sort(there) - np.sort(here))) / -DETACHED if there.size == here.size else np.nan
-        for here, there in zip(*(jumps(each["count"], separation) for each in (found, true)), strict=True)
-    ]
+    tension = -true[turn:].min()
+    alike, contact = count == true_count, (count > 0) | (true_count > 0)
+    off = np.where(alike & contact, np.abs(force - true), 0.0) / tension
+    middle = 0.5 * (separation[1 : turn + 1] + separation[:turn])
+    made, truly_made = (np.repeat(middle, np.maximum(np.diff(each[: turn + 1]), 0).astype(int))
+                        for each in (count, true_count))  # fmt: skip
     return Judged(
-        loading=float(force[: turn + 1].max()),
-        unloading=float(force[turn:].max()),
-        area=float(area.max()),
-        pull_off=float(-found["force"][turn:].min() / tension - 1.0),
-        on=lags[0],
-        off=lags[1],
-        apart=float(np.mean(~alike[contact])),
+        loading=float(off[: turn + 1].max()),
+        unloading=float(off[turn:].max()),
+        pull_off=float(-force[turn:].min() / tension - 1.0),
+        on=float(np.mean(truly_made - made)) / -DETACHED if made.size == truly_made.size else np.nan,
     )
 
 
@@ -156,12 +122,12 @@ def _curves(panel: Axes, case: xr.Dataset, quantity: str, share: float) -> None:
     """Draw a quantity over the separation: loading hollow and thin, unloading full."""
     case, separation, turn = known(case)
     loading, unloading = slice(turn + 1), slice(turn, None)
-    drawn = {name: share * case[quantity].sel(source=name).to_numpy() for name in ("independent", "second", "bem")}
-    for name, style in (("independent", "--"), ("second", "-")):
-        for part, width, label in ((loading, 1.0, None), (unloading, 2.0, _LABELS[name])):
+    drawn = {name: share * case[quantity].sel(source=name).to_numpy() for name in (*_COLOURS, "elements")}
+    for name, style in (("independent", "--"), ("order 2", "-")):
+        for part, width, label in ((loading, 1.0, None), (unloading, 2.0, name)):
             panel.plot(separation[part], drawn[name][part], style, color=_COLOURS[name], lw=width, label=label)
     for part, fill, label in ((loading, "w", "loading"), (unloading, "k", "unloading")):
-        panel.plot(separation[part], drawn["bem"][part], "ko", ms=4, mfc=fill, label=f"boundary elements, {label}")
+        panel.plot(separation[part], drawn["elements"][part], "ko", ms=4, mfc=fill, label=f"boundary elements, {label}")
     panel.set(xlabel="separation from the highest asperity [a0²/R]")
 
 
@@ -174,10 +140,9 @@ def _by_tabor(panel: Axes, result: xr.Dataset) -> None:
     groups = sorted(set(zip(numbers, spacings, strict=True)))
     for (number, spacing), marker in zip(groups, "Dsov", strict=False):
         own = cases_of(result, asperities=number, spacing=spacing)
-        for name in ("second",) if number == 1 else ("independent", "second"):
-            found = [judge(own.isel(case=i), name) for i in range(own.sizes["case"])]
-            errors = [100.0 * max(one.loading, one.unloading) for one in found]
-            label = f"{'one' if number == 1 else f'{number:g}'}, {spacing:g} a0 apart: {_LABELS[name]}"
+        for name in ("order 2",) if number == 1 else ("independent", "order 2"):
+            errors = [100.0 * max(judge(case, name)[:2]) for case in each_of(own)]
+            label = f"{'one' if number == 1 else f'{number:g}'}, {spacing:g} a0 apart: {name}"
             colour, line = ("k", ":") if number == 1 else (_COLOURS[name], "-")
             panel.loglog(own["tabor"], errors, line, marker=marker, color=colour, label=label)
     panel.set(xlabel="Tabor number", ylabel="largest error of the force over pull-off [%]")
@@ -204,48 +169,21 @@ def draw(result: xr.Dataset) -> Figure:
 
 
 def report(result: xr.Dataset) -> str:
-    """Return errors by case and model, where jumps are, and the errors of the grids."""
-    errors, lags, grids = [], [], []
-    for i in range(result.sizes["case"]):
-        case = result.isel(case=i)
-        nearest = float(case["nearest"])
-        apart = f"{float(case['spacing']):g} ({f'{nearest:.1f}' if np.isfinite(nearest) else 'images'})"
-        head = [f"{int(case['asperities'])}", apart, f"{float(case['tabor']):g}"]
-        for name in MODELS:
-            found = judge(case, name)
-            errors.append([*head, _LABELS[name], *_percent(found, "loading", "unloading", "area", "pull_off")])
-            lags.append([*head, _LABELS[name], *_percent(found, "on", "off", "apart")])
-        fraction = float(case["area"].sel(source="bem").max() / case["asperities"] / case["spacing"] ** 2)
-        mesh = judge(case, "coarse")
-        seconds = f"{float(case['seconds'].sel(source='bem')):.1f} s"
-        paired = f"{1e3 * float(case['seconds'].sel(source='second')):.0f} ms"
-        grids.append([*head, f"{100.0 * fraction:.1f} %", f"{float(case['cells']):.1f}",
-                      *_percent(mesh, "loading", "unloading", "area", "pull_off"), seconds, paired])  # fmt: skip
-    step = float(-result["separation"].isel(case=0).diff("step")[0])
-    own = ["asperities", "apart (nearest) [a0]", "Tabor number"]
-    errors_head = ["model", "loading", "unloading", "contact area", "pull-off force"]
-    lags_head = ["model", "jumps on", "lets go", "steps not compared"]
-    grids_head = ["contact", "range over grid", "loading", "unloading", "contact area", "pull-off force", "elements",
-                  "pairs"]  # fmt: skip
-    return f"""Errors against boundary elements, of the force over the largest tension and of the area over the largest,
-the largest of the steps where as many asperities are in contact. One alone has its periodic images as neighbours. The
-area of boundary elements is the mean of those where the gap is 0 and where it is less than the range:
+    """Return errors, and where jumps are, by case and source."""
+    rows = []
+    for case in each_of(result):
+        labels = [f"{float(case[name]):g}" for name in _COLUMNS]
+        for source in (*MODELS, "coarse grid"):
+            found = [f"{100.0 * each:.2g} %" for each in judge(case, source)]
+            rows.append([*labels, source, *found])
+    head = ["asperities", "apart [a0]", "Tabor number", "source", "loading", "unloading", "pull-off force", "jumps on"]
+    return f"""Errors against boundary elements: of the force over the largest tension, the largest of the steps where
+as many asperities are in contact, and of the pull-off force. Lags of jumps, means over the asperities: how much farther
+away they jump on by boundary elements, over the stretch at which one alone lets go. One alone has its periodic images
+as neighbours. The coarse grid has 2/3 as many points a side:
 
-{table([*own, *errors_head], errors)}
-
-Lags of jumps, means over the asperities: how much farther away they jump on and let go by boundary elements, over the
-stretch at which one alone lets go (a step of the path is {100.0 * step / -DETACHED:.0f} % of it):
-
-{table([*own, *lags_head], lags)}
-
-How far a grid of 2/3 as many points a side is from the grid, the largest contact fraction, and run times of a path:
-
-{table([*own, *grids_head], grids)}
+{table(head, rows)}
 """
-
-
-def _percent(found: Judged, *names: str) -> list[str]:
-    return [f"{100.0 * getattr(found, name):.2g} %" for name in names]
 
 
 STUDY = Study(

@@ -12,12 +12,12 @@ import xarray as xr
 
 import roughmdr as rm
 from roughmdr.numerics.arguments import Floats
-from studies.comparison import PAIRS, law_of
+from studies.comparison import INTERACTIONS, PAIRS, law_of
 
 WORK = 0.5 / math.pi
 DETACHED = -(3.0 * 0.25 ** (4.0 / 3.0))
 """The indentation at which one alone lets go under fixed grips, t^4 - t at t^3 = 1/4: a measure of separations."""
-MODELS: dict[str, Any] = {"independent": None, "first": PAIRS[1], "second": PAIRS[2]}
+MODELS: dict[str, Any] = {name: INTERACTIONS[name] for name in ("independent", "order 1", "order 2")}
 """Interactions by name; images of the patch are felt by pairs only."""
 _STD_RADIUS = 0.1
 _LEAST_DISTANCE = 0.7  # least distance over the mean spacing
@@ -68,7 +68,7 @@ class Case(NamedTuple):
         """Return the path: until all are in contact to second order, a little beyond, and until all have let go."""
         height = ensemble["height"].to_numpy()
         scanned = np.linspace(height.max(), height.min() - 1.5, _SCANNED)
-        count = law(ensemble, scanned, MODELS["second"])["count"]
+        count = law(ensemble, scanned, MODELS["order 2"])["count"]
         deepest = float(scanned[np.flatnonzero(count == self.asperities)[0]]) - self.below
         loading = np.arange(height.max() + _ABOVE, deepest - 0.5 * self.step, -self.step)
         unloading = np.arange(loading[-1] + self.step, height.max() + _BEYOND, self.step)

@@ -1,23 +1,32 @@
-"""Asperities against boundary elements at the same separations: forces, areas, numbers of contacts, and run times.
+"""Asperities against boundary elements at the same separations: forces and areas.
 
 Asperities are independent, displaced by the mean pressure, or coupled in pairs to first and second order.
 """
 
 import itertools
 import math
-from functools import partial
 from typing import Any
 
 import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
-from oracles.boundary_elements import HeightMap, by_perimeter, label_contacts, of_half_ellipsoids
+from oracles.boundary_elements import HeightMap, by_perimeter, of_half_ellipsoids
 
 import roughmdr as rm
 from roughmdr.model_error.interaction import ASPERITIES, SUMMITS, interaction_error
 from roughmdr.numerics.arguments import Floats
-from studies.comparison import HELD, INTERACTIONS, held, in_cases, law_or_nan, median_and_largest, panels
-from studies.study import Figure, Study, in_two_processes, named, table, timed, without_limits
+from studies.comparison import (
+    HELD,
+    INTERACTIONS,
+    draw_errors,
+    each_of,
+    held,
+    in_cases,
+    law_or_nan,
+    median_and_largest,
+    panels,
+)
+from studies.study import Figure, Study, in_two_processes, table, without_limits
 from studies.versus_bem.ensembles import (
     CASES,
     FINE,
@@ -37,7 +46,6 @@ GROUPS = ("few contacts", "random", "separated", "square", "nayak", "map", "crow
 FEW_CONTACTS = 4.0
 """Up to so many, contacts of the patch and of its periodic images are a lattice, wherever they are placed."""
 _MIN_POINTS = 2.5  # least points of the grid a contact radius: with fewer, elements are off by a per cent and more
-_NEGLIGIBLE = 1e-4  # least error that is told apart from none
 _FINE_SEED = 11  # and above, of the cases on the finest grids
 _BINS = ((0.0, 0.004), (0.004, 0.03), (0.03, 0.15), (0.15, 1.0))
 _FINER_BINS = tuple(itertools.pairwise((0.0, 0.004, 0.03, 0.06, 0.15, 1.0)))
@@ -50,28 +58,23 @@ _LAW = {
 _ELEMENTS = {
     "force_bem": ("force of boundary elements, infinite in full contact", "N"),
     "contact_fraction_bem": ("contact fraction of boundary elements", "1"),
-    "contact_count_bem": ("contacts of boundary elements", "1"),
-    "seconds_bem": ("run time of a load by boundary elements", "s"),
     "force_coarse": ("force of boundary elements with half as many points a side", "N"),
-    "seconds_second": ("run time of a load to second order", "s"),
     "radius_points": ("root mean square of the contact radii over the spacing of the grid", "1"),
 }
 
 
-def press(surface: HeightMap, separation: float, separated_paraboloids: bool) -> tuple[float, float, float, float]:
-    """Return force, contact fraction, contacts and run time of boundary elements at a separation [m].
+def press(surface: HeightMap, separation: float, separated_paraboloids: bool) -> tuple[float, float]:
+    """Return force and contact fraction of boundary elements at a separation [m].
 
     Areas of separated paraboloids are those by their pressure. NaN where elements do not converge, as next to full
     contact.
     """
     try:
-        (force, _), seconds = timed(partial(surface.press, separation))
+        force = surface.press(separation).force
     except rm.OutOfRange:
-        return math.nan, math.nan, math.nan, math.nan
-    if not math.isfinite(force):
-        return force, 1.0, 1.0, seconds
+        return math.nan, math.nan
     area = of_half_ellipsoids if separated_paraboloids else by_perimeter
-    return force, area(surface.pressure), np.unique(label_contacts(surface.pressure)).size - 1, seconds
+    return force, area(surface.pressure) if math.isfinite(force) else 1.0
 
 
 def law_by(ensemble: xr.Dataset, separation: Floats, interaction: Any) -> list[Floats]:
@@ -96,14 +99,13 @@ def compare(case: Case | MapCase) -> dict[str, Any]:
     along = separations(ensemble, FRACTIONS[FRACTIONS <= _FINE_FRACTION] if case.points >= FINE else FRACTIONS)
     along = along[np.isfinite(along)]
     laws = [law_by(ensemble, along, interaction) for interaction in INTERACTIONS.values()]
-    seconds = timed(partial(law_by, ensemble, along, INTERACTIONS["order 2"]))[1] / along.size  # all is compiled by now
     fine, coarse = (HeightMap(height, SIZE, MODULUS) for height in maps)
     radii, distance = [contact_radii(ensemble, h) for h in along.tolist()], distances(ensemble)
     apart = [isinstance(case, Case) and "radius" in ensemble and not touch(each, distance) for each in radii]
     found = np.array([press(fine, *each) for each in zip(along.tolist(), apart, strict=True)]).T
     rough = [press(coarse, *each)[0] for each in zip(along.tolist(), apart, strict=True)]
     points = np.array([np.sqrt(np.mean(a[a > 0.0] ** 2)) for a in radii]) * case.points / SIZE
-    numbers = zip(_ELEMENTS, (*found, rough, np.full(along.size, seconds), points), strict=True)
+    numbers = zip(_ELEMENTS, (*found, rough, points), strict=True)
     return {**dict(zip(_LAW, zip(*laws, strict=True), strict=True)), **dict(numbers)}
 
 
@@ -111,15 +113,11 @@ def measure(quick: bool) -> xr.Dataset:
     """Compare all cases, or a few of them on coarse grids."""
     cases = QUICK if quick else CASES
     found = in_two_processes(compare, cases)
-    placement, shape, roughness = zip(*(case.labels for case in cases), strict=True)
-    words = named("heights over the drop at a spacing; of maps, of the waves")
     return xr.Dataset(
         in_cases(_LAW, found, "case", "model", "step") | in_cases(_ELEMENTS, found, "case", "step"),
         {
             "model": list(INTERACTIONS),
-            "placement": ("case", list(placement)),
-            "shape": ("case", list(shape)),
-            "roughness": ("case", list(roughness), words),
+            "placement": ("case", [case.placement if isinstance(case, Case) else "map" for case in cases]),
             "seed": ("case", [case.seed for case in cases]),
         },
     )
@@ -171,60 +169,39 @@ def draw(result: xr.Dataset) -> Figure:
     along = np.geomspace(5e-4, 1.0, 200)
     for name, kind, style in (("estimate", ASPERITIES, "k-"), ("estimate for maps", SUMMITS, "k--")):
         left.loglog(along, interaction_error(along, kind), style, lw=1.2, label=name)
-    for name in GROUPS:
-        left.plot(fraction[group == name], np.abs(errors(result)[group == name]), "o", ms=4, label=name)
-    left.set(ylim=(0.005, 1.3), ylabel="force too low, of crowds too high, by (relative)", title="Independent")
-    for number, model in enumerate(INTERACTIONS):
-        for own, mark in ((group != "map", "o"), (group == "map", "x")):
-            error = np.abs(errors(result, model, False)[own])
-            right.loglog(fraction[own], error, f"C{number}{mark}", ms=4, label=model if mark == "o" else None)
-    right.set(ylim=(1e-6, 1.3), ylabel="error of the force (relative)", title="By interaction (crosses: maps)")
-    for panel in (left, right):
-        panel.set(xlim=(5e-4, 1.0), xlabel="summed contact area over nominal area")
-        panel.legend(fontsize=9)
+    draw_errors(left, fraction, {name: np.where(group == name, errors(result), np.nan) for name in GROUPS})
+    left.set(ylim=(0.005, 1.3), title="Independent")
+    draw_errors(right, fraction, {model: errors(result, model, False) for model in INTERACTIONS})
+    right.set(ylim=(1e-6, 1.3), title="By interaction")
     return figure
 
 
 def report(result: xr.Dataset) -> str:
-    """Return errors over sqrt(f), by interaction and on the finest grids, and how the stated ones do."""
-    fraction = result["contact_fraction"].sel(model="independent").to_numpy()
-    error, group = errors(result), groups(result)
-    coefficients, estimated, by_model, stated = [], [], [], []
-
-    def told_by(model: str) -> Floats:
-        return result["model_error_curve"].sel(model=model).to_numpy()
-
+    """Return errors over sqrt(f), how the stated ones do, and errors by interaction and on the finest grids."""
+    independent = result.sel(model="independent")
+    fraction, error, group = independent["contact_fraction"].to_numpy(), errors(result), groups(result)
+    stated = np.where(group == "crowd", independent["model_error_curve"], estimates(fraction, group))
+    coefficients, estimated, by_model = [], [], []
     for name in GROUPS:
         own = np.isfinite(error) & (group == name)
         parts = [own & (fraction > low) & (fraction <= high) for low, high in _BINS]
         coefficients.append([name, *(_quantiles(error[part] / np.sqrt(fraction[part])) for part in parts)])
         if own.any():
-            told = told_by("independent") if name == "crowd" else estimates(fraction, group)
-            estimated.append([name, *held(np.abs(error[own]), told[own])])
-    for name, (low, high) in itertools.product(GROUPS, _FINER_BINS):
-        own = (group == name) & (fraction > low) & (fraction <= high)
-        if own.any():
-            found = [median_and_largest(errors(result, model, False)[own]) for model in INTERACTIONS]
-            by_model.append([name, f"{low:g} to {high:g}", *found])
-    grid = grid_errors(result)
-    unknown = np.fmax(grid, _NEGLIGIBLE)
-    for order, name in itertools.product(("order 1", "order 2"), GROUPS):
-        off, said = np.abs(errors(result, order, False)), told_by(order)
-        own = np.isfinite(off) & np.isfinite(said) & (group == name)
-        if own.any():
-            stated.append([order[-1], name, *held(off[own], said[own], unknown[own])])
+            estimated.append([name, *held(np.abs(error[own]), stated[own])])
+        for low, high in _FINER_BINS:
+            part = (group == name) & (fraction > low) & (fraction <= high)
+            if part.any():
+                found = [median_and_largest(errors(result, model, False)[part]) for model in INTERACTIONS]
+                by_model.append([name, f"{low:g} to {high:g}", *found])
     fine = result.isel(case=np.flatnonzero(result["seed"].to_numpy() >= _FINE_SEED))
-    finest = [_fine(fine.isel(step=i)) for i in range(fine.sizes["step"]) if fine["force_bem"][:, i].notnull().any()]
-    seconds = " and ".join(f"{1e3 * float(result[name].median()):.3g} ms" for name in ("seconds_second", "seconds_bem"))
-    grid = grid[np.isfinite(grid)]
+    finest = [_fine(step) for step in each_of(fine, "step") if step["force_bem"].notnull().any()]
     return f"""e over sqrt(f), median (5 to 95 %), f the summed contact fraction of independent asperities:
 
 {table(["placement", *(f"f from {low:g} to {high:g}" for low, high in _BINS)], coefficients)}
 
 {table(["placement", *HELD], estimated)}
 
-Forces of boundary elements on half as many points differ by {100.0 * float(np.median(grid)):.2g} % (median), at most
-{100.0 * float(grid.max()):.2g} %.
+Forces of boundary elements on half as many points differ by {median_and_largest(grid_errors(result))}.
 
 Errors of the force by interaction, median of the magnitude (largest):
 
@@ -232,13 +209,7 @@ Errors of the force by interaction, median of the magnitude (largest):
 
 Separated paraboloids of lognormal radii on the finest grid, largest errors of all seeds:
 
-{table(["f", *INTERACTIONS, "of the grid", "area", "contacts"], finest)}
-
-The error that each order states (not told apart: {_NEGLIGIBLE:g} and less, and errors of the grid):
-
-{table(["order", "placement", *HELD], stated)}
-
-A load to second order and by boundary elements takes {seconds} (median).
+{table(["f", *INTERACTIONS, "of the grid", "area"], finest)}
 """
 
 
@@ -252,9 +223,8 @@ def _fine(step: xr.Dataset) -> list[str]:
     off = [abs(force / exact - 1.0) for force in (*step["force"].transpose("model", ...), step["force_bem"])]
     second = step.sel(model="order 2")
     area = abs(second["contact_fraction"] / step["contact_fraction_bem"] - 1.0)
-    missed = abs(second["contact_count"] - step["contact_count_bem"])
     cells = (f"{100.0 * float(error.max()):.2g} %" for error in (*off, area))
-    return [f"{float(second['contact_fraction'].median()):.2g}", *cells, f"{float(missed.max()):.0f} off"]
+    return [f"{float(second['contact_fraction'].median()):.2g}", *cells]
 
 
 STUDY = Study(

@@ -1,7 +1,6 @@
 """Cases: ensembles with positions, of profiles f = c r^n, with their maps; Gaussian maps with their summits."""
 
 import math
-import tempfile
 from itertools import product
 from pathlib import Path
 from typing import NamedTuple
@@ -11,6 +10,8 @@ import xarray as xr
 from oracles.gaussian_maps import gaussian_map
 
 import roughmdr as rm
+from roughmdr.ensemble.maps.found import asperities_on
+from roughmdr.ensemble.maps.height_map import HeightMap
 from roughmdr.numerics.arguments import Floats
 from roughmdr.spectrum import SelfAffine
 from roughmdr.storage.labelled import Labelled
@@ -37,11 +38,6 @@ class Case(NamedTuple):
     longest wave over the side."""
     points: int  # a side of the grid of boundary elements
     seed: int
-
-    @property
-    def labels(self) -> tuple[str, str, float]:
-        """Placement, shape and roughness."""
-        return self.placement, self.shape, self.roughness
 
     def build(self) -> tuple[xr.Dataset, Floats, Floats]:
         """Return the ensemble, and its height map on the grid and on one of half as many points a side."""
@@ -162,20 +158,14 @@ class MapCase(NamedTuple):
     points: int  # a side of the grid
     seed: int
 
-    @property
-    def labels(self) -> tuple[str, str, float]:
-        """Placement, shape, and the ratio of the wavelengths."""
-        return "map", f"hurst {self.hurst:g}", self.long_wave / self.short_wave
-
     def build(self) -> tuple[xr.Dataset, Floats, Floats]:
         """Return the summits, and the map on its grid and on every second point of it, which still holds its waves."""
         waves = {"long_wave": self.long_wave * SIZE, "short_wave": self.short_wave * SIZE}
         spectrum = SelfAffine.of(hurst=self.hurst, rms_slope=_MAP_SLOPE, **waves)
         height = gaussian_map(spectrum, self.points, SIZE, self.seed)
-        with tempfile.TemporaryDirectory() as folder:
-            write_map(height, SIZE, Path(folder) / "map.nc")
-            summits = rm.generate({"source": "surface", "file": str(Path(folder) / "map.nc")}, seed=0)
-        return summits, height, height[::2, ::2]
+        surface = HeightMap(height, SIZE / self.points, SIZE / self.points, True)
+        summits = asperities_on(surface, 0.0, "summits", "map", {"detrend": "none"})
+        return summits.labelled().to_xarray(), height, height[::2, ::2]
 
 
 def write_map(height: Floats, size: float, file: Path) -> None:

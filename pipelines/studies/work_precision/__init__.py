@@ -70,7 +70,7 @@ def cheapest(result: xr.Dataset, scene: str, quantity: str, error: float) -> xr.
 
 
 def report(result: xr.Dataset) -> str:
-    """Return tables of the cheapest method for each error, and of runs to an error that is asked for."""
+    """Return tables of the cheapest method for each error."""
     lines = ["The cheapest method for an error: run time of a curve, in brackets the evaluations counted in it.\n"]
     for quantity in QUANTITIES:
         rows = [
@@ -79,14 +79,7 @@ def report(result: xr.Dataset) -> str:
             if not np.isnan(cases_of(result, scene=scene).error.sel(quantity=quantity)).all()
         ]
         lines += [table([f"error of the {quantity}", *(f"{100 * error:g} %" for error in TARGETS)], rows), ""]
-    rows = []
-    asked_for = cases_of(result, method="auto, error asked for")
-    for point in (asked_for.isel(point=number) for number in range(asked_for.sizes["point"])):
-        scene, error, found = point.scene.item(), float(point.setting), float(point.error.sel(quantity="force"))
-        best = _in_words(cheapest(result, scene, "force", error))
-        rows.append([scene, f"{100 * error:g} %", f"{100 * found:.1g} %", _cost(point), best])
-    head = ['[accuracy] method = "auto"', "asked", "came to", "cost", "cheapest, had one known"]
-    return "\n".join([*lines, table(head, rows)])
+    return "\n".join(lines)
 
 
 def _in_words(point: xr.Dataset | None) -> str:
@@ -95,11 +88,7 @@ def _in_words(point: xr.Dataset | None) -> str:
         return "none"
     value, setting = float(point.setting), str(point.setting_of.item())
     what = "" if setting == "-" else f", {value:g} {setting.removesuffix('s') if value == 1.0 else setting}"
-    return f"{point.method.item()}{what}: {_cost(point)}"
-
-
-def _cost(point: xr.Dataset) -> str:
-    return f"{1e3 * float(point.seconds):.2g} ms ({float(point.evaluations):,.0f})"
+    return f"{point.method.item()}{what}: {1e3 * float(point.seconds):.2g} ms ({float(point.evaluations):,.0f})"
 
 
 def _unique(values: xr.DataArray) -> list[str]:

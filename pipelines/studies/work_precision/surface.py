@@ -11,12 +11,9 @@ from oracles.expected_paraboloids import Rough
 from oracles.plain_sums import Sums, with_brentq, with_numpy
 
 from roughmdr.aggregate import LoadSeparation
-from roughmdr.aggregate.totals import AREA, FORCE
 from roughmdr.batch import tasks
 from roughmdr.batch.plan import Cell, make_plan
 from roughmdr.batch.realization import simulate_realization
-from roughmdr.ensemble.nodes import Rule
-from roughmdr.expected.node import MeanProblem, set_up, totals_of
 from roughmdr.runner.backend import Backend
 from roughmdr.runner.run import execute
 from roughmdr.scene import Scene, read
@@ -80,25 +77,6 @@ def simulate(rough: Rough, estimator: str, realization: int = 0) -> Curve:
     cell = _cell(rough)
     found = simulate_realization(cell.scene, cell.path, realization, VARIABLES, estimator)
     return Curve(found.variables["force"], found.variables["contact_area"], found.visits)
-
-
-def _by_nodes(rough: Rough, order: float) -> Callable[[], Curve]:
-    """Prepare the expected curve with so many nodes over the radii, kinks in the radius left unresolved."""
-    scene, path, *_ = _cell(rough)
-    problem = MeanProblem(scene.asperities, path, scene.effective_modulus, scene.adhesion_model, (FORCE, AREA))
-
-    def action() -> Curve:
-        nodes = set_up(problem, Rule.smooth(int(order)))
-        total, products = totals_of(nodes, path.separation, problem.rows, list(range(path.separation.size)))
-        return Curve(COUNT * total[FORCE], COUNT * total[AREA], products)
-
-    return action
-
-
-def expected_by_nodes(rough: Rough, exact: Reference, quick: bool) -> Iterator[Point]:
-    """Return the points of ``_by_nodes``; none where all radii are equal."""
-    if rough.radius_std:
-        yield from each_setting((1, 2, 3, 4, 6, 8, 12, 16), _by_nodes)(rough, exact, quick)
 
 
 Draw = Callable[[Rough, int], Curve]  # (surface, number) -> one realisation
@@ -174,7 +152,6 @@ METHODS = (
     Method("stratified, error asked for", "error", _to_error("stratified"), competes=False),
     Method("auto, error asked for", "error", _to_error("auto"), competes=False),
     Method("expected", "-", each_setting((1.0,), lambda rough, _: partial(simulate, rough, "expected"))),
-    Method("expected, nodes given", "nodes", expected_by_nodes, competes=False),
     Method("plain NumPy", "realisations", _drawn(_plain(with_numpy), 128, 16)),
     Method("brentq", "realisations", _drawn(_plain(with_brentq), 4, 4)),
 )

@@ -169,11 +169,6 @@ def by_table(tip: Tip, points: float) -> Callable[[], Curve]:
     return partial(by_package, tip, rm.Tabulated(r, tip.shape.f(r)))
 
 
-def by_brentq(tip: Tip, tolerance: float) -> Callable[[], Curve]:
-    """Prepare brentq with the closed forms."""
-    return partial(by_root_finder, tip, tip.g, tip.reduced_load, tolerance)
-
-
 _SPRINGS, _NODES = (10, 30, 100, 300, 1e3, 3e3, 1e4, 3e4, 1e5), (2, 3, 4, 6, 8, 12, 16, 32, 64, 128)
 _TOLERANCES, _STEPS = tuple(10.0**-k for k in range(1, 15)), tuple(range(2, 16))
 METHODS = (
@@ -181,6 +176,8 @@ METHODS = (
     Method("table", "points", each_setting((5, 10, 20, 40, 80, 160, 320), by_table)),
     Method("springs", "springs", each_setting(_SPRINGS, lambda tip, n: partial(by_springs, tip, int(n)))),
     Method("Abel quadrature", "nodes", each_setting(_NODES, by_quadrature)),
-    Method("brentq", "tolerance", each_setting(_TOLERANCES, by_brentq)),
+    Method("brentq", "tolerance", each_setting(
+        _TOLERANCES, lambda tip, limit: partial(by_root_finder, tip, tip.g, tip.reduced_load, limit)
+    )),
     Method("plain NumPy", "Newton steps", each_setting(_STEPS, lambda tip, n: partial(by_vectors, tip, int(n)))),
-)
+)  # fmt: skip
