@@ -57,6 +57,8 @@ def fit_lines(fit: Labelled) -> Iterator[tuple[str, str]]:
         of_many += f"; of {', '.join(shared)}, one for all, 95 %"
     of_one = "; ".join(["± one standard error; in parentheses 95 %", *reasons])
     yield "intervals", of_many if curve_names(many) else of_one
+    if "posterior" in fit.attrs:
+        yield from under("posterior", [*_posterior_lines(fit), str(fit.attrs["posterior"])])
     load = "pressure" if "pressure_fitted" in fit.variables else "force"
     points = fit.variables["residual"].values.size
     yield "residual", f"{100.0 * _number(fit, 'residual_rms'):.2g} % of the largest {load} (r.m.s. of {points} points)"
@@ -70,6 +72,17 @@ def fit_lines(fit: Labelled) -> Iterator[tuple[str, str]]:
         yield "warning", text
     failed = [(name, many.coordinates["failure"].values[i]) for i, name in enumerate(curve_names(many))]
     yield from under("failed", [f"{name}: {text}" for name, text in failed if text][:_SAID])
+
+
+def _posterior_lines(fit: Labelled) -> Iterator[str]:
+    """Yield the median and the 95 % interval of each parameter by its draws."""
+    keys = parameter_keys(fit)
+    for key in keys:
+        array = fit.variables[f"{key.replace('.', '_')}_posterior"]
+        low, middle, high = np.quantile(array.values, [0.025, 0.5, 0.975]).tolist()
+        digits, unit = _digits(middle, 0.25 * (high - low)), str(array.attrs["units"])
+        ends = format_quantity(low, unit, to=high, digits=digits)
+        yield f"{key:<{max(map(len, keys))}}  {format_quantity(middle, unit, digits=digits)} ({ends})"
 
 
 def curve_names(fit: Labelled) -> list[str]:
