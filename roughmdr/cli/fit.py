@@ -28,6 +28,7 @@ from roughmdr.cli.terminal import Command, print_text
     "--prior", "priors", multiple=True, metavar="KEY=MEAN+-STD", help="What is known of a free key; repeatable."
 )
 @click.option("--model", type=click.Choice(["auto"]), help="Choose the adhesion model by the curve.")
+@click.option("--posterior", is_flag=True, help="Draw from the posterior too, some hundred times as long.")
 @changes_option
 @fresh_option
 @workers_option
@@ -46,11 +47,12 @@ def fit(measured: tuple[Path, ...], scene: Path, output: Path, free: str, **othe
     from roughmdr.fitting.words import describe_fit
 
     keys, shared = ([key.strip() for key in each.split(",") if key.strip()] for each in (free, others.pop("shared")))
-    known = {
+    known: dict[str, Any] = {
         option: {key: re.split(sign, str(each)) for key, each in pairs(f"--{name}", others.pop(option)).items()}
         for option, name, sign in (("bounds", "bounds", r"\.\."), ("priors", "prior", r"\+-|±"))
     }
-    options = FitOptions(model=others.pop("model"), **known, shared=shared, workers=others.pop("workers"), quiet=False)
+    known |= {name: others.pop(name) for name in ("model", "posterior", "workers")}
+    options = FitOptions(**known, shared=shared, quiet=False)
     curves = measured[0] if len(measured) == 1 else list(measured)
     result = fit_labelled(curves, scene, keys, output, options, command=command_line(), **others)
     print_text(describe_fit(result))

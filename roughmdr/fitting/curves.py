@@ -15,6 +15,7 @@ from roughmdr.fitting.columns import Columns, read_columns
 from roughmdr.fitting.joint import agree
 from roughmdr.fitting.measured import MeasuredCurve, read_measured
 from roughmdr.fitting.model import Model
+from roughmdr.fitting.posterior import posterior_of
 from roughmdr.fitting.result import assemble
 from roughmdr.fitting.search import Fitted, fitted
 from roughmdr.fitting.uncertainty import uncertainty
@@ -87,10 +88,11 @@ def first_of(curves: Curves, parameters: int) -> MeasuredCurve:
     return read_measured(next(iter(curves.values())), parameters)
 
 
-def assembled(command: str, fit: Fitted) -> Labelled:
-    """Return the result of a search with its uncertainty."""
+def assembled(command: str, fit: Fitted, *, posterior: bool = False) -> Labelled:
+    """Return the result of a search with its uncertainty, and draws from the posterior where they are asked for."""
     started, known = time.perf_counter(), uncertainty(fit.model, fit.found)
-    return assemble(fit, known, fit.model.seconds + time.perf_counter() - started, command)
+    draws = posterior_of(fit.model, fit.found, known) if posterior else None
+    return assemble(fit, known, fit.model.seconds + time.perf_counter() - started, command, draws)
 
 
 def fit_each(curves: Curves, first: Model, command: str, *, shared: list[str], workers: int, quiet: bool) -> Labelled:

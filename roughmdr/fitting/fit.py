@@ -12,6 +12,7 @@ from roughmdr.fitting.curves import assembled, first_of, fit_each, taken_apart
 from roughmdr.fitting.measured import MeasuredCurve
 from roughmdr.fitting.model import Model
 from roughmdr.fitting.parameters import MACHINE, Known
+from roughmdr.fitting.posterior import check_package
 from roughmdr.fitting.search import fitted
 from roughmdr.fitting.stored import read_fit
 from roughmdr.fitting.words import curve_names, parameter_keys
@@ -41,6 +42,7 @@ class FitOptions:
     bounds: Mapping[str, Any] = field(default_factory=dict)
     priors: Mapping[str, Any] = field(default_factory=dict)
     shared: str | Iterable[str] = ()
+    posterior: bool = False
     workers: int = 1
     quiet: bool = True
 
@@ -87,6 +89,7 @@ def fit(
         otherwise, as if measured, are pairs by free keys, such as ``{"adhesion.work": ("50 mJ/m^2", "10 mJ/m^2")}``. Of
         many curves: ``shared``, the free keys that have one value for all, whose errors are those of the joint fit;
         ``workers``, the number of processes, 1 for this one alone unless given; the numbers are the same for any.
+        ``posterior = True`` draws from the posterior of one curve, which takes some hundred times as long.
         ``quiet = False`` shows the progress.
 
     Returns
@@ -165,12 +168,12 @@ def fit_labelled(
             check_same_kind(out, FIT)
             _check_nothing_lost(out, [*free, *curves, *(RANGES if auto else ())])
     if auto:
-        result = assembled(command, best_model(validated, curve, free, known))
+        result = assembled(command, best_model(validated, curve, free, known), posterior=options.posterior)
     elif curves:
         model, workers, quiet = Model(validated, curve, free, known), options.workers, options.quiet
         result = fit_each(curves, model, command, shared=shared, workers=workers, quiet=quiet)
     else:
-        result = assembled(command, fitted(Model(validated, curve, free, known)))
+        result = assembled(command, fitted(Model(validated, curve, free, known)), posterior=options.posterior)
     if out is not None:
         write_netcdf(result, out)
     return result
@@ -190,6 +193,10 @@ def _check(options: FitOptions, free: list[str], shared: list[str], scene: Scene
         raise SceneError(f"model is {options.model!r}; it must be 'auto' or None; set adhesion.model for another")
     if options.model and several:
         raise SceneError("model: 'auto' compares models of one curve; give one, or set adhesion.model")
+    if options.posterior and several:
+        raise SceneError("posterior: is of one curve; fit each alone, or take the intervals of all")
+    if options.posterior:
+        check_package()
     if not free:
         raise SceneError("free: names no key; expected some like adhesion.work, material.modulus")
     for name, given in (("bounds", options.bounds), ("priors", options.priors)):

@@ -5,10 +5,12 @@ import numpy as np
 from roughmdr.fitting.doubts import doubts
 from roughmdr.fitting.model import Model
 from roughmdr.fitting.parameters import Parameter
+from roughmdr.fitting.posterior import Posterior
 from roughmdr.fitting.residuals import relative_rms
 from roughmdr.fitting.search import Fitted, Found
 from roughmdr.fitting.uncertainty import Uncertainty
 from roughmdr.loading.path import labelled_branches
+from roughmdr.numerics.arguments import Floats
 from roughmdr.result.trust import trust_lines
 from roughmdr.schema.units import format_quantity, spelled_in_results
 from roughmdr.storage.labelled import Array, Labelled
@@ -19,18 +21,23 @@ _REFERENCES = (
     "Mueller and Stadtmueller (1987), Annals of Statistics 15, 610: uneven noise by the residuals of neighbours; Bell "
     "and McCaffrey (2002), Survey Methodology 28, 169: its degrees of freedom"
 )
+_CHAINS = "Foreman-Mackey et al. (2013), Publ. Astron. Soc. Pacific 125, 306: chains of the posterior (emcee)"
 _NAMES = {"force": "force", "pressure": "pressure, force over nominal area"}
 _CONSTANT = "spring constant that the file of the curve tells"
 _CONTROLS = {"separation": "separation", "remote": "position of the far end of the spring"}
 
 
-def assemble(fitted: Fitted, known: Uncertainty, seconds: float, command: str) -> Labelled:
+def assemble(
+    fitted: Fitted, known: Uncertainty, seconds: float, command: str, posterior: Posterior | None = None
+) -> Labelled:
     """Return the result of a fit, as it is stored."""
     model, found, compared, undecided = fitted
     law, scene, curve = model.law(found.x), model.fitted(found.x), model.curve
     variables: dict[str, Array] = {}
     for i, parameter in enumerate(model.parameters):
         variables |= _of_parameter(parameter, i, found, known)
+        if posterior is not None:
+            variables[f"{parameter.name}_posterior"] = _draws(parameter, posterior.x[:, :, i])
     variables |= {
         "covariance": Array(
             ("parameter", "parameter_2"),
@@ -74,6 +81,8 @@ def assemble(fitted: Fitted, known: Uncertainty, seconds: float, command: str) -
     warnings = [*undecided, *doubts(model, found, known), *law.warnings]
     if any(stage.replaces_contacts for stage in scene.stages) and law.yielding()["plastic_contact_fraction"] == 0.0:
         warnings.append("no contact of the fitted law yields: begin the search with a lower strength")
+    if posterior is not None and not posterior.long_enough:
+        warnings.append("the chains are too short to tell the posterior well: free less, or give priors")
     interaction = None if scene.interaction is None else scene.interaction.model
     attrs = {
         **provenance(scene.title, command),
@@ -84,6 +93,10 @@ def assemble(fitted: Fitted, known: Uncertainty, seconds: float, command: str) -
         "intervals": _intervals(model, known),
         "trust": dict(trust_lines(law.model_error.named, interaction=interaction))["trust"],
     }
+    if posterior is not None:
+        law_error = "with" if posterior.with_law else "without"
+        attrs["posterior"] = f"about {posterior.independent:.0f} independent draws, {law_error} the error of the law"
+        attrs["references"] += f"; {_CHAINS}"
     if warnings:
         attrs["warnings"] = "\n".join(warnings)
     result = Labelled(variables, coordinates, attrs)
@@ -118,6 +131,14 @@ def _of_parameter(parameter: Parameter, i: int, found: Found, known: Uncertainty
         about = f"how far the model error of the law may shift the fitted {key}, not in its interval"
         numbers["_model_error"] = per_x * float(known.shift[i]), about
     return {f"{parameter.name}{end}": _number(value, unit, name) for end, (value, name) in numbers.items()}
+
+
+def _draws(parameter: Parameter, x: Floats) -> Array:
+    """Return draws of a parameter from the posterior, in the dimensions that ArviZ knows."""
+    values, unit = np.vectorize(parameter.value)(x), spelled_in_results(parameter.unit)
+    return Array(
+        ("chain", "draw"), values, {"units": unit, "long_name": f"draws of {parameter.key} from the posterior"}
+    )
 
 
 def _of_curve(model: Model, fitted: np.ndarray) -> dict[str, Array]:

@@ -151,11 +151,12 @@ def _forms(data: Labelled) -> dict[str, Form]:
 
 
 def _optional_forms(data: Labelled) -> dict[str, Form]:
-    """Return the forms of the arrays that a fit can have: errors of points and of the model, adhesion models."""
+    """Return the forms of the arrays that a fit can have: errors of points and of the model, draws, adhesion models."""
     errors = {f"{names[0]}_model_error": Form((), "f", "") for _, names in _parameters(data)}
     compared = {name: Form(("model",), "f", "1") for name in COMPARED}
     compared |= {name: Form(("model",), "text", "") for name in ("model_name", "model_failure")}
     compared |= {"spring_constant": Form((), "f", "N m-1")}
+    errors |= {f"{names[0]}_posterior": Form(("chain", "draw"), "f", "") for _, names in _parameters(data)}
     return errors | compared | {f"{_load(data)}_error": Form(("point",), "f", MEASURED[_load(data)])}
 
 

@@ -53,6 +53,8 @@ class Uncertainty(NamedTuple):
     """Which parameters have an end of their interval by the profile of the sum of squares."""
     shift: Floats | None
     """Largest shift of each x by the error of the law; None where that error is not known."""
+    error_of_law: Floats | None
+    """Error of the law [step], weighted as the deviations, likewise."""
 
     @property
     def covariance(self) -> Floats:
@@ -118,9 +120,9 @@ def uncertainty(model: Model, found: Found) -> Uncertainty:
     reach = _reach(influence, quantile, edges)
     stays = reach < (1.0 - _ROUNDING) * quantile * np.linalg.norm(influence, axis=1)
     ends = profiled(model, found, inverse, np.where(stays | (not edges.certain), -reach, reach))
-    return Uncertainty(
-        influence, inverse, slopes, noise, ends, (ends != reach).any(axis=0), _shift(model, found, inverse)
-    )
+    error = _error_of_law(model, found)
+    shift = None if error is None else np.abs(inverse[:, :points] @ error)
+    return Uncertainty(influence, inverse, slopes, noise, ends, (ends != reach).any(axis=0), shift, error)
 
 
 def apart_from_the_rest(
@@ -240,10 +242,10 @@ def by_residuals(inverse: Floats, left: Floats, residuals: Floats, rho: float = 
     return by_independent_noise(inverse * np.sqrt(variance), rho), freedom
 
 
-def _shift(model: Model, found: Found, inverse: Floats) -> Floats | None:
+def _error_of_law(model: Model, found: Found) -> Floats | None:
     law = model.law(found.x)
     curve = law.model_error.curve
     if not np.isfinite(curve).all():
         return None
     error = curve * law.variables[model.curve.quantity]  # at given separation
-    return np.abs(inverse[:, : error.size] @ (yielded(model, found.x, error) / model.curve.weight))
+    return np.asarray(yielded(model, found.x, error) / model.curve.weight)

@@ -57,6 +57,7 @@ def fit_lines(fit: Labelled) -> Iterator[tuple[str, str]]:
         of_many += f"; of {', '.join(shared)}, one for all, 95 %"
     of_one = "; ".join(["± one standard error; in parentheses 95 %", *reasons])
     yield "intervals", of_many if curve_names(many) else of_one
+    yield from under("posterior", _posterior_lines(fit))
     load = "pressure" if "pressure_fitted" in fit.variables else "force"
     points = fit.variables["residual"].values.size
     yield "residual", f"{100.0 * _number(fit, 'residual_rms'):.2g} % of the largest {load} (r.m.s. of {points} points)"
@@ -70,6 +71,20 @@ def fit_lines(fit: Labelled) -> Iterator[tuple[str, str]]:
         yield "warning", text
     failed = [(name, many.coordinates["failure"].values[i]) for i, name in enumerate(curve_names(many))]
     yield from under("failed", [f"{name}: {text}" for name, text in failed if text][:_SAID])
+
+
+def _posterior_lines(fit: Labelled) -> Iterator[str]:
+    """Yield the median and the 95 % interval of each parameter by its draws, and how many these are."""
+    arrays = {key: fit.variables.get(f"{key.replace('.', '_')}_posterior") for key in parameter_keys(fit)}
+    drawn = {key: array for key, array in arrays.items() if array is not None and array.values.size}
+    for key, array in drawn.items():
+        low, middle, high = np.quantile(array.values, [0.025, 0.5, 0.975]).tolist()
+        digits = _digits(middle, 0.25 * (high - low))
+        unit = str(fit.variables[key.replace(".", "_")].attrs["units"])
+        ends = format_quantity(low, unit, to=high, digits=digits)
+        yield f"{key:<{max(map(len, drawn))}}  {format_quantity(middle, unit, digits=digits)} ({ends})"
+    if drawn:
+        yield str(fit.attrs.get("posterior", "draws of an unknown number"))
 
 
 def curve_names(fit: Labelled) -> list[str]:

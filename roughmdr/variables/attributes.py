@@ -49,6 +49,7 @@ FIT_ATTRIBUTES = _PROVENANCE | _declare(
     Attribute("kind", required=True, names=("fit",)),
     Attribute("measured"),
     Attribute("intervals"),
+    Attribute("posterior"),
     Attribute("trust", required=True),
 )
 """Attributes of a fit by their names."""

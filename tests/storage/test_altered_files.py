@@ -14,6 +14,7 @@ from foreign_commands import RESULTS
 from forms import large
 from measurements import CASES, noise_of
 from scenes import ASPERITIES, CONDUCTION, scene
+from tips import MODULUS, Tip
 
 import roughmdr as rm
 from roughmdr.cli import main
@@ -151,12 +152,15 @@ def test_every_array_and_attribute_in_turn(name: str) -> None:
     read(data, as_result, readers)
 
 
-@pytest.fixture(scope="module")
-def fit(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    file, case = tmp_path_factory.mktemp("fit") / "fit.nc", CASES["adhesive"]
-    force = case.force()
-    measured = case.measure(noise_of("constant", force), force)
-    rm.fit(measured, case.scene, ["adhesion.work", "material.modulus"], out=file)
+@pytest.fixture(scope="module", params=["adhesive", large("with draws")])
+def fit(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    file, case, tip = tmp_path_factory.mktemp("fit") / "fit.nc", CASES["adhesive"], Tip("hertz", 1e-7, 1e6)
+    if request.param == "adhesive":
+        force = case.force()
+        rm.fit(case.measure(noise_of("constant", force), force), case.scene, case.true, out=file)
+    else:
+        measured = tip.measure(np.random.default_rng(0), 40, ("constant", 0.01), 0.0)
+        rm.fit(measured, tip.scene(), [MODULUS], out=file, posterior=True)
     return file
 
 
