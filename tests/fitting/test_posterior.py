@@ -67,11 +67,11 @@ def test_draws_of_a_modulus_are_those_of_its_density(columns: list[str], prior: 
 @pytest.mark.filterwarnings("ignore::roughmdr.LimitWarning")
 @pytest.mark.parametrize("columns", [STATED, PLAIN], ids=["stated", "unstated"])
 def test_simulated_curves_are_where_their_draws_say(columns: list[str], monkeypatch: pytest.MonkeyPatch) -> None:
-    """S. Talts et al. (2018), arXiv 1804.06788: ranks of true values among draws are even, for 100 curves."""
+    """S. Talts et al. (2018), arXiv 1804.06788: ranks of true values among draws are even, for 50 curves."""
     monkeypatch.setattr(posterior, "_LONG", 20.0)
     scene, ranks = TIP.scene(), list[tuple[int, int]]()
     part = part_of_law(scene, measured_by(TIP))
-    for seed in range(100):
+    for seed in range(50):
         rng = np.random.default_rng([seed, columns is STATED])
         modulus, offset = 1e6 * np.exp(rng.uniform(-0.7, 0.7)), rng.uniform(-5e-9, 5e-9)
         measured = TIP.measure(rng, 30, ("constant", 0.03), 0.0)
