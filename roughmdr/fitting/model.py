@@ -55,7 +55,7 @@ class Point(NamedTuple):
     """The rule over shape parameters by which the law was found, where there is one."""
 
 
-_LEAST_NOISE = 1e-12  # least noise over the largest load: of a curve without any, that of rounding
+LEAST_NOISE = 1e-12  # least noise over the largest load: of a curve without any, that of rounding
 _NOWHERE = Changes(np.empty(0, dtype=np.int64), np.empty(0))
 _NONE = Point(np.empty(0), np.empty(0), 0.0, (), np.empty(0), np.empty(0))
 
@@ -217,7 +217,7 @@ class Model:
         deviations, left = deviations[:points], np.linalg.svd(slopes[:points], full_matrices=False)[0]
         if self.curve.error is None:
             freedom = max(points - len(self.parameters), 1)
-            self.noise = max(float(np.sqrt(np.sum(np.square(deviations)) / freedom)), _LEAST_NOISE)
+            self.noise = max(float(np.sqrt(np.sum(np.square(deviations)) / freedom)), LEAST_NOISE)
         self.noise *= (points / correlation_of_noise(left, deviations).effective(points)) ** 0.5
         self._last = _NONE
 

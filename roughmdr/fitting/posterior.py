@@ -2,8 +2,8 @@
 
 What is known before is even in the logarithm of a number that must be positive, in the number itself otherwise, between
 the bounds of the search, times its prior. Noise is normal; where its size is not stated it is the same at all steps,
-and any size is as likely (even in its logarithm). The error that the law states is normal too, and has one sign along
-the whole path: it is one more number in the chains.
+and its logarithm, one more number in the chains, is even. The error that the law states is normal too, and has one sign
+along the whole path: the covariance of the deviations is s^2 + v v', with that of the noise, s, and of the law, v.
 
 D. Foreman-Mackey, D. W. Hogg, D. Lang, J. Goodman (2013), Publ. Astron. Soc. Pacific 125, 306 (emcee).
 """
@@ -14,12 +14,12 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from roughmdr.errors import RoughmdrError
-from roughmdr.fitting.model import Model
+from roughmdr.fitting.model import LEAST_NOISE, Model
 from roughmdr.fitting.search import Found
 from roughmdr.fitting.uncertainty import Uncertainty
 from roughmdr.numerics.arguments import Floats
 
-_WALKERS = 4  # number of chains over that of the numbers: emcee needs twice as many
+_WALKERS, _FEWEST = 4, 8  # number of chains over that of the numbers, of which emcee needs two, and least
 _BLOCK, _BLOCKS = 100, 50  # steps between two looks at the chains, and most of these
 _LONG = 50.0  # length of chains, over their autocorrelation time, from which emcee trusts that time
 _BURNT = 5.0  # length of their begin that is left out, over that time
@@ -43,11 +43,13 @@ class Posterior(NamedTuple):
 def posterior_of(model: Model, found: Found, known: Uncertainty) -> Posterior:
     """Return draws around the parameters of least squares; RoughmdrError without the package emcee."""
     emcee, seed = check_package(), model.start.seed
-    rng = np.random.default_rng(seed)
-    density, laws = _density(model, found, known), int(known.error_of_law is not None)
-    begin, (low, high) = np.append(found.x, np.zeros(laws)), model.bounds
-    starts = rng.standard_normal((_WALKERS * begin.size, known.influence.shape[1])) @ known.influence.T
-    starts = np.hstack([np.clip(found.x + starts, low, high), rng.standard_normal((len(starts), laws))])
+    rng, noise = np.random.default_rng(seed), np.zeros(int(model.curve.error is None))
+    if noise.size:
+        noise += np.log(max(float(np.sqrt(np.mean(np.square(found.residuals)))), _least_noise(model)))
+    density, begin = _density(model, found, known), np.append(found.x, noise)
+    count = max(_WALKERS * begin.size, _FEWEST)
+    of_noise = rng.standard_normal((count, noise.size)) / np.sqrt(2.0 * found.points)
+    starts = np.hstack([_starts(model, found, known, rng, count), noise + np.abs(of_noise)])
     while (lost := ~np.isfinite([density(each) for each in starts])).any():
         starts[lost] = 0.5 * (starts[lost] + begin)
     moves = [(emcee.moves.DEMove(), _DIFFERENTIAL), (emcee.moves.DESnookerMove(), _SNOOKER)]
@@ -55,37 +57,59 @@ def posterior_of(model: Model, found: Found, known: Uncertainty) -> Posterior:
     chains.random_state = np.random.RandomState(seed).get_state()
     state: Any = starts
     for _ in range(_BLOCKS):
-        state = chains.run_mcmc(state, _BLOCK, skip_initial_state_check=True)
-        time = float(np.max(chains.get_autocorr_time(tol=0)))
+        with np.errstate(all="ignore"):  # chains that stand at one place propose no other
+            state = chains.run_mcmc(state, _BLOCK, skip_initial_state_check=True)
+        time = float(np.nan_to_num(np.max(chains.get_autocorr_time(tol=0)), nan=chains.iteration))
         if chains.iteration > _LONG * time:
             break
     burnt, thin = min(int(_BURNT * time), chains.iteration // 2), max(int(0.5 * time), 1)
     draws = np.swapaxes(chains.get_chain(discard=burnt, thin=thin), 0, 1)[:, :, : found.x.size]
-    independent = len(starts) * (chains.iteration - burnt) / time
-    return Posterior(draws, independent, chains.iteration > _LONG * time, bool(laws))
+    independent = count * (chains.iteration - burnt) / time
+    return Posterior(draws, independent, chains.iteration > _LONG * time, known.error_of_law is not None)
+
+
+def _starts(model: Model, found: Found, known: Uncertainty, rng: np.random.Generator, count: int) -> Floats:
+    """Return where chains begin: within the bounds along each direction in which noise and law move the parameters."""
+    width, (low, high) = np.hstack([known.influence, LEAST_NOISE * np.eye(found.x.size)]), model.bounds
+    if known.error_of_law is not None:
+        width = np.column_stack([width, known.by_even_noise[:, : found.points] @ known.error_of_law / _TWO_SIDED])
+    ahead = rng.standard_normal((count, width.shape[1])) @ width.T
+    up, down = high - found.x, found.x - low
+    forth, back = (np.min(np.where(s * ahead > 0.0, up, down) / np.abs(ahead), axis=1) for s in (1.0, -1.0))
+    sign = np.where(forth < np.minimum(back, 1.0), -1.0, 1.0)  # away from a bound that is met
+    part = np.minimum(rng.random(count) * np.maximum(forth, back), 1.0)
+    return np.asarray(found.x + (sign * part)[:, None] * ahead)
 
 
 def _density(model: Model, found: Found, known: Uncertainty) -> Callable[[Floats], float]:
-    """Return the logarithm of the density of the posterior but for a constant, of x and the error of the law."""
-    (low, high), points, count = model.bounds, found.points, found.x.size
-    rho, of_law = known.noise.rho, known.error_of_law
+    """Return the logarithm of the density of the posterior but for a constant, of x and the logarithm of the noise."""
+    (low, high), points, count, rho = model.bounds, found.points, found.x.size, known.noise.rho
+
+    def white(each: Floats) -> Floats:
+        return np.append(each[0], (each[1:] - rho * each[:-1]) / np.sqrt(1.0 - rho * rho))
+
+    least, law = np.log(_least_noise(model)), known.error_of_law
+    v = white(np.zeros(points) if law is None else law / _TWO_SIDED)
+    size = float(v @ v)
 
     def density(at: Floats) -> float:
-        x, sizes = at[:count], at[count:]
-        if (x < low).any() or (x > high).any():
+        x, noise = at[:count], float(at[count:].sum())  # 0 where it is stated: deviations are in its units
+        deviations = model.deviations(x) if ((low <= x) & (x <= high)).all() else np.full(points, np.inf)
+        if noise < least or not np.isfinite(deviations).all():
             return -np.inf
-        deviations = model.deviations(x)
-        if not np.isfinite(deviations).all():
-            return -np.inf
-        residuals, others = deviations[:points], deviations[points:] / (model.noise or 1.0)
-        if of_law is not None:
-            residuals = residuals + sizes[0] * of_law / _TWO_SIDED
-        ahead = (residuals[1:] - rho * residuals[:-1]) / np.sqrt(1.0 - rho * rho)
-        squares = float(residuals[0] ** 2 + ahead @ ahead)
-        of_noise = points * np.log(squares) if model.curve.error is None else squares
-        return -0.5 * float(of_noise + others @ others + sizes @ sizes)
+        r, others = white(deviations[:points]), deviations[points:] / (model.noise or 1.0)
+        variance = np.exp(2.0 * noise)
+        along = float(v @ r) / size if size > 0.0 else 0.0
+        across = r - along * v
+        squares = float(across @ across) / variance + along * along * size / (variance + size) + float(others @ others)
+        return -points * noise - 0.5 * float(np.log1p(size / variance) + squares)
 
     return density
+
+
+def _least_noise(model: Model) -> float:
+    """Return the least noise in units of the deviations; of a stated one less than that."""
+    return float(np.max(np.abs(model.curve.load / model.curve.weight))) * LEAST_NOISE
 
 
 def check_package() -> Any:

@@ -8,6 +8,7 @@ import numpy as np
 import pandas as pd
 import pytest
 from command import roughmdr
+from forms import large
 from scipy.stats import chisquare
 from tips import MODULUS, OFFSET, Floats, Tip
 
@@ -38,7 +39,7 @@ def part_of_law(scene: dict[str, Any], measured: pd.DataFrame) -> float:
 
 
 @pytest.mark.parametrize("columns", [STATED, PLAIN], ids=["stated", "unstated"])
-@pytest.mark.parametrize("prior", [None, 2e4])
+@pytest.mark.parametrize("prior", [None, large(2e4)])
 def test_draws_of_a_modulus_are_those_of_its_density(columns: list[str], prior: float | None) -> None:
     """The force is linear in the modulus: the density over its logarithm and the error of the law is on a grid."""
     measured = measured_by(TIP)
@@ -96,6 +97,24 @@ def test_same_seed_same_draws_and_a_file_holds_them(tmp_path: Path) -> None:
     done = roughmdr("info", "fit.nc", cwd=tmp_path)
     assert "independent draws, with the error of the law" in done.stdout
     assert "Foreman-Mackey" in fits[0].attrs["references"]
+
+
+@pytest.mark.large
+@pytest.mark.filterwarnings("ignore::roughmdr.LimitWarning")
+def test_exact_curves_and_unknown_numbers_end_with_finite_draws() -> None:
+    """Of a curve without noise the error of the law is all; a radius beside a modulus is known by its bounds alone."""
+    measured = measured_by(TIP)[["separation"]].assign(
+        force=lambda each: TIP.law(1e6, 0.0, -each.separation.to_numpy())
+    )
+    fit = rm.fit(measured, TIP.scene(), [MODULUS], posterior=True)
+    part = part_of_law(TIP.scene(), measured)
+    assert np.log(draws_of(fit, MODULUS)).std() == pytest.approx(part / TWO_SIDED, rel=0.2)
+    bounds = {"asperities.radius": (5e-7, 2e-6)}
+    fit = rm.fit(measured_by(TIP), TIP.scene(), [MODULUS, "asperities.radius"], bounds=bounds, posterior=True)
+    radius = draws_of(fit, "asperities.radius")
+    assert radius.min() < 5.5e-7
+    assert radius.max() > 1.8e-6
+    assert np.std(np.log(draws_of(fit, MODULUS) * radius**0.5)) < 0.05
 
 
 def test_refusals(monkeypatch: pytest.MonkeyPatch) -> None:
