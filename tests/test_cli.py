@@ -169,13 +169,11 @@ def test_the_scaling_study_in_its_quick_form(tmp_path: Path) -> None:
     )
     assert done.returncode == 0, done.stderr
     with xr.open_dataset(tmp_path / "scaling.nc") as result:
-        assert result.cost.sizes == {"contact": 2, "method": 3}
+        assert result.cost.sizes == {"contact": 2, "method": 2}
         assert (result.cost > 0.0).all()
-        assert result.law_brentq.dropna("law_shape").sizes == {"law_shape": 8}
+        assert result.law_brentq.dropna("law_shape").sizes == {"law_shape": 10}
         assert result.law_time.sizes == {"law_shape": 11, "law": 3}
         assert (result.law_time > 0.0).all()
-        assert result.cell_runs == result.attrs["cells"]
-    assert (tmp_path / "scaling.png").stat().st_size > 5000
 
 
 @pytest.mark.large
@@ -189,4 +187,3 @@ def test_the_study_of_plans_in_its_quick_form(tmp_path: Path) -> None:
         planned, taken = result.memory.sel(of="plan"), result.memory.sel(of="run")
         assert (planned / taken > 0.5).all()
         assert (planned / taken < 2.0).all()
-    assert (tmp_path / "foreseen.png").stat().st_size > 5000
