@@ -1,5 +1,5 @@
 # make demo: set up, compute a rough adhesive contact, show it.   make test: set up, run every check, build the docs.
-# make test-all: the long forms of tests as well, some forty minutes more.
+# make test-all: the long forms of tests as well, some fifty minutes more.
 # make docs: build the documentation into docs/_build/html, examples and all.
 # make studies: measure error against run time, the extremes, and what leaving out saves, in reduced forms that say what
 # they leave out, three minutes and compiling; report in results/studies. make studies-full: all of it, about an hour.

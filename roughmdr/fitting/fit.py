@@ -97,8 +97,9 @@ def fit(
     xarray.Dataset
         Each parameter, dots as underscores, with ``_standard_error``, ``_low`` and ``_high`` (95 %), and
         ``_model_error``, its shift by the error of the law where that is known; ``covariance`` and ``correlation``; the
-        fitted law and the residual over ``point``. The attribute ``scene`` is the fitted scene. With ``model``,
-        ``aicc``, ``akaike_weight``, ``tabor_parameter`` and ``model_residual_rms`` over the dimension ``model``. Of
+        fitted law and the residual over ``point``. With ``posterior`` draws of each, ``_posterior``, over ``chain`` and
+        ``draw``. The attribute ``scene`` is the fitted scene. With ``model``, ``aicc``, ``akaike_weight``,
+        ``tabor_parameter`` and ``model_residual_rms`` over the dimension ``model``. Of
         many curves all have the dimension ``curve``, and ``scene`` is that of the start; ``failure`` says why a curve
         could not be fitted, and ``remark`` has the doubts about each.
 
@@ -115,7 +116,7 @@ def fit(
     ----------
     Intervals without ``force_error``: H.-G. Mueller, U. Stadtmueller (1987), Annals of Statistics 15, 610 (uneven noise
     by the residuals of neighbours); R. M. Bell, D. F. McCaffrey (2002), Survey Methodology 28, 169 (degrees of freedom
-    of Student's t).
+    of Student's t). Draws: D. Foreman-Mackey et al. (2013), Publ. Astron. Soc. Pacific 125, 306.
 
     Examples
     --------

@@ -22,6 +22,7 @@ from roughmdr.numerics.arguments import Floats
 _WALKERS, _FEWEST = 4, 8  # number of chains over that of the numbers, of which emcee needs two, and least
 _BLOCK, _BLOCKS = 100, 50  # steps between two looks at the chains, and most of these
 _LONG = 50.0  # length of chains, over their autocorrelation time, from which emcee trusts that time
+_HALVINGS = 10  # halvings of the distance to the best parameters of chains that begin where there is no law
 _BURNT = 5.0  # length of their begin that is left out, over that time
 _TWO_SIDED = 1.96  # quantile of the normal distribution: stated errors of laws bound 95 %
 _DIFFERENTIAL, _SNOOKER = 0.8, 0.2  # shares of two kinds of moves, as emcee's documentation proposes for several modes
@@ -50,7 +51,8 @@ def posterior_of(model: Model, found: Found, known: Uncertainty) -> Posterior:
     count = max(_WALKERS * begin.size, _FEWEST)
     of_noise = rng.standard_normal((count, noise.size)) / np.sqrt(2.0 * found.points)
     starts = np.hstack([_starts(model, found, known, rng, count), noise + np.abs(of_noise)])
-    while (lost := ~np.isfinite([density(each) for each in starts])).any():
+    for _ in range(_HALVINGS):
+        lost = ~np.isfinite([density(each) for each in starts])
         starts[lost] = 0.5 * (starts[lost] + begin)
     moves = [(emcee.moves.DEMove(), _DIFFERENTIAL), (emcee.moves.DESnookerMove(), _SNOOKER)]
     chains = emcee.EnsembleSampler(*starts.shape, density, moves=moves)
@@ -95,7 +97,7 @@ def _density(model: Model, found: Found, known: Uncertainty) -> Callable[[Floats
     def density(at: Floats) -> float:
         x, noise = at[:count], float(at[count:].sum())  # 0 where it is stated: deviations are in its units
         deviations = model.deviations(x) if ((low <= x) & (x <= high)).all() else np.full(points, np.inf)
-        if noise < least or not np.isfinite(deviations).all():
+        if (at.size > count and noise < least) or not np.isfinite(deviations).all():
             return -np.inf
         r, others = white(deviations[:points]), deviations[points:] / (model.noise or 1.0)
         variance = np.exp(2.0 * noise)
@@ -108,7 +110,7 @@ def _density(model: Model, found: Found, known: Uncertainty) -> Callable[[Floats
 
 
 def _least_noise(model: Model) -> float:
-    """Return the least noise in units of the deviations; of a stated one less than that."""
+    """Return the least noise that is sought, in units of the deviations."""
     return float(np.max(np.abs(model.curve.load / model.curve.weight))) * LEAST_NOISE
 
 

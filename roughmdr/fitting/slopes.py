@@ -1,12 +1,13 @@
 """Derivatives of the law with respect to the free parameters, on a machine at its separations.
 
-Those by the two bodies and the zero of the control follow from the law itself where contacts are not lost one by one;
-others are differences.
+The law itself tells those by the two bodies and by the zero of the control, unless contacts are lost one by one; others
+are differences.
 """
 
 import numpy as np
 from numpy.typing import NDArray
 
+from roughmdr.expected import Slopes
 from roughmdr.expected.compute import KERNEL_ERROR
 from roughmdr.fitting.model import Model, Point
 from roughmdr.fitting.parameters import BASELINE, BASELINE_SLOPE, OFFSET, Parameter, length_scale
@@ -28,10 +29,12 @@ def slopes_of(model: Model, x: Floats) -> Floats:
     middle = model.point(x)
     if model.curve.control == "separation" or not (model.exact and middle.load.size):
         with model.held(load=model.borne, rule=middle.rule):
-            return _at_given(model, middle)
+            told = any(p.key in _TOLD for p in model.parameters)
+            return _at_given(model, middle, model.slopes(x, middle.rule) if told else None)
     with model.held(load=middle.load, rule=middle.rule):
-        at_given = _at_given(model, model.point(x))
-        spring = _spring(model, x)
+        slopes = model.slopes(x, middle.rule)
+        at_given = _at_given(model, model.point(x), slopes)
+        spring = _spring(model, x, slopes)
     model.near = None if model.jumps else spring
     points = middle.load.size  # rows behind them are from priors
     lines = model.baselines / model.curve.weight[:, None]  # which are beside the law
@@ -44,10 +47,10 @@ def yielded(model: Model, x: Floats, change: Floats) -> Floats:
         return change
     middle = model.point(x)
     with model.held(load=middle.load, rule=middle.rule):
-        return _spring(model, x).yielded(change)
+        return _spring(model, x, model.slopes(x, middle.rule)).yielded(change)
 
 
-def _at_given(model: Model, middle: Point) -> Floats:
+def _at_given(model: Model, middle: Point, slopes: Slopes | None) -> Floats:
     """Return the derivatives of the deviations where the load that stretches a spring stays."""
     low, high = model.bounds
     steps = np.minimum(_step(middle), 0.5 * (high - low))  # to one side at least they stay within the bounds
@@ -61,13 +64,12 @@ def _at_given(model: Model, middle: Point) -> Floats:
         direction, step = np.eye(middle.x.size)[number], float(steps[number])
         return _difference(model, middle.deviations, [side(direction), side(-direction)], step)
 
-    known = _from_the_law(model, middle)
+    known = _from_the_law(model, middle, slopes)
     return np.stack([slope(i) if each is None else each for i, each in enumerate(known)], axis=1)
 
 
-def _from_the_law(model: Model, middle: Point) -> list[Floats | None]:
+def _from_the_law(model: Model, middle: Point, slopes: Slopes | None) -> list[Floats | None]:
     """Return the derivatives of the deviations that need no differences; None for others."""
-    slopes = model.slopes(middle.x, middle.rule) if any(p.key in _TOLD for p in model.parameters) else None
 
     def change(number: int, p: Parameter) -> Floats | None:
         if p.key in (BASELINE, BASELINE_SLOPE) and model.borne is not model.curve.load:
@@ -90,14 +92,14 @@ def _of_priors(model: Model, x: Floats) -> Floats:
     return np.asarray(model.noise * np.vstack([*rows, model.told[0]]))
 
 
-def _spring(model: Model, x: Floats) -> Spring:
+def _spring(model: Model, x: Floats, slopes: Slopes | None) -> Spring:
     """Return how the load changes with the separation on a machine, whose spring bears a given load."""
     middle, scene = model.point(x), model.scene(x)
-    step, told = _step(middle) * length_scale(model.curve), model.slopes(x, middle.rule)
+    step = _step(middle) * length_scale(model.curve)
 
     def slope(steps: NDArray[np.bool_]) -> Floats:
-        if told is not None:
-            return np.where(steps, -told.stiffness, 0.0)
+        if slopes is not None:
+            return np.where(steps, -slopes.stiffness, 0.0)
         sides = [model.load(x, model.curve.values + sign * step * steps).load for sign in (1.0, -1.0)]
         return _difference(model, middle.load, sides, step)
 

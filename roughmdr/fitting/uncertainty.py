@@ -243,6 +243,7 @@ def by_residuals(inverse: Floats, left: Floats, residuals: Floats, rho: float = 
 
 
 def _error_of_law(model: Model, found: Found) -> Floats | None:
+    """Return the error of the law at the measured control [step], weighted; None where the law tells none."""
     law = model.law(found.x)
     curve = law.model_error.curve
     if not np.isfinite(curve).all():

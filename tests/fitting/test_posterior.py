@@ -102,7 +102,7 @@ def test_same_seed_same_draws_and_a_file_holds_them(tmp_path: Path) -> None:
 @pytest.mark.large
 @pytest.mark.filterwarnings("ignore::roughmdr.LimitWarning")
 def test_exact_curves_and_unknown_numbers_end_with_finite_draws() -> None:
-    """Of a curve without noise the error of the law is all; a radius beside a modulus is known by its bounds alone."""
+    """Without noise the error of the law is all that is left; a radius beside a modulus is known by bounds alone."""
     measured = measured_by(TIP)[["separation"]].assign(
         force=lambda each: TIP.law(1e6, 0.0, -each.separation.to_numpy())
     )

@@ -124,6 +124,8 @@ def test_each_loop_of_a_path_tells_its_loss(tmp_path: Path) -> None:
     pattern = r"(\S+ N m to \S+ m) \(loading takes \S+\)"
     together = re.findall(pattern, said("all", *loops))
     assert together == [re.search(pattern, said(f"{i}", loop))[1] for i, loop in enumerate(loops)]  # type: ignore[index]
+    half = said("half", loops[1], np.linspace(far, 0.0, 120), np.linspace(0.0, 1.0, 20))
+    assert re.findall(pattern, half) == together[1:2]  # what is not undone has no loss yet
     losses = [float(each.split()[0]) for each in together]
     assert losses == sorted(losses)
     assert losses[0] < 0.5 * losses[-1]

@@ -103,11 +103,13 @@ def whole_lines(
 
 
 def _loops(cell: ResultView, units: UnitSystem) -> Iterator[tuple[float, float, float]]:
-    """Yield the overclosure that each loading reaches, the energy lost until its unloading ends, and what it takes."""
+    """Yield of each loading that its unloading undoes the overclosure reached, the energy lost, and what it takes."""
     length, energy = units.length.size, units.force.size * units.length.size
     separation, force = cell.coordinates[SEPARATION.name].values.reshape(-1), cell.mean("force")[0].reshape(-1)
     for there, back in pairwise(cell.legs):
-        if (there.branch, back.branch) == ("loading", "unloading"):
+        returns = separation[back.steps[-1]] >= separation[there.steps[0]]
+        if (there.branch, back.branch) == ("loading", "unloading") and returns:
             joined = np.concatenate([there.steps[-1:], back.steps])
             taken, regained = (np.trapezoid(force[steps], -separation[steps]) for steps in (there.steps, joined))
-            yield -float(separation[joined].min()) / length, max(taken + regained, 0.0) / energy, taken / energy
+            if np.isfinite([taken, regained]).all():
+                yield -float(separation[joined].min()) / length, max(taken + regained, 0.0) / energy, taken / energy
