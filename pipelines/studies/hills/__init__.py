@@ -79,10 +79,11 @@ def dataset_of(pressed: list[tuple[str, list[Pressed]]]) -> xr.Dataset:
     }
     seconds = {"seconds": ("run time of force and area along a path", "s")}
     numbers = [{name: [getattr(one, name) for one in each] for name in Pressed._fields} for _, each in pressed]
+    solvers = ["fine elements", *METHODS][: max(len(each) for _, each in pressed)]
     return xr.Dataset(
         in_cases(words, numbers, "case", "solver", "fraction") | in_cases(seconds, numbers, "case", "solver"),
         {
-            "solver": ["fine elements", *METHODS],
+            "solver": solvers,
             "fraction": ("fraction", FRACTIONS, named("contact fraction of the separation, about")),
             "maps": ("case", [name for name, _ in pressed]),
         },
