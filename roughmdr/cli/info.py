@@ -26,7 +26,8 @@ def info(ctx: click.Context, result: Path, cells: bool, follow: bool, as_json: b
     """Tell what RESULT contains.
 
     Prints sizes, the pull-off force with its error, run time, seed, versions and the scene. RESULT may also be
-    OUT.nc.parts, while a run is at work or after it was interrupted: prints how far it is.
+    OUT.nc.parts, while a run is at work or after it was interrupted: prints how far it is. Where only parts of a batch
+    are there (--part), prints how far each is.
     """
     if follow:
         if as_json:
@@ -39,11 +40,14 @@ def info(ctx: click.Context, result: Path, cells: bool, follow: bool, as_json: b
         from roughmdr.batch.resume.share import Share
         from roughmdr.storage.files import destination
 
-        output = destination(result)
-        shares = [share.folder(output) for share in Share.all_beside(output)]
-        for parts in (result.with_name(f"{result.name}.parts"), *shares):
-            if _is_folder(parts):
-                raise StoreError(f"{result}: is not written yet; what is finished is told by: roughmdr info {parts}")
+        output, parts = destination(result), result.with_name(f"{result.name}.parts")
+        if _is_folder(parts):
+            raise StoreError(f"{result}: is not written yet; what is finished is told by: roughmdr info {parts}")
+        if (shares := Share.all_beside(output)) and not as_json:
+            from roughmdr.report.parts import describe_shares
+
+            print_text(describe_shares([share.folder(output) for share in shares]))
+            return
     from roughmdr.report.summary import describe
     from roughmdr.storage.result_file import is_fit
 

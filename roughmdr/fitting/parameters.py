@@ -13,6 +13,7 @@ from roughmdr.scene import Scene
 from roughmdr.scene.keys import key_readers, must_be_positive, number_at
 from roughmdr.scene.sweep import SECTIONS
 from roughmdr.schema.quantities import Quantity, Reader
+from roughmdr.schema.units import as_text
 from roughmdr.schema.wording import short_repr
 from roughmdr.stages import STAGES
 
@@ -147,7 +148,7 @@ def _with_known(parameter: Parameter, reader: Reader, known: Known) -> Parameter
 
 def _pair(name: str, given: Any, readers: tuple[Reader, Reader]) -> tuple[float, float]:
     """Return two numbers in SI that a user gave; RoughmdrError where they are none."""
-    given = given.tolist() if isinstance(given, np.ndarray) else given
+    given = as_text(given.tolist() if isinstance(given, np.ndarray) else given)
     if not (isinstance(given, list | tuple) and len(given) == 2 and not any(isinstance(one, dict) for one in given)):
         raise RoughmdrError(f"has {name} = {short_repr(given)}; expected two numbers")
     try:

@@ -172,6 +172,18 @@ class PartCellTable(TypedDict):
     total: int | None  # null with [accuracy]
 
 
+class LawTable(TypedDict):
+    """The mean law so far of a cell, at a few steps of its path."""
+
+    swept: dict[str, float | str]
+    variable: str
+    runs: int
+    control: str  # name of the values, such as separation
+    values: list[float]  # SI
+    mean: list[float | None]  # SI, likewise the error
+    standard_error: list[float | None]  # null where it is not known
+
+
 class PartsTable(TypedDict):
     """A folder OUT.nc.parts: what a batch has done that is at work, or was interrupted."""
 
@@ -184,6 +196,7 @@ class PartsTable(TypedDict):
     failed: int  # runs, which are repeated
     remark: str | None  # why the first of them failed
     cells: list[PartCellTable]  # none where other versions began the batch
+    law: LawTable | None  # null without runs, or where other versions began the batch
     began: str | None  # ISO 8601, UTC
     last: str | None  # when something was kept last
     holder: dict[str, int | str] | None  # "process", "host", "since" of the run at work; null for none

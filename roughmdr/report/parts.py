@@ -3,10 +3,12 @@
 import math
 import shlex
 from itertools import islice
+from pathlib import Path
 
-from roughmdr.batch.resume.kept import Kept, Progress, progress_of
+from roughmdr.batch.plan import Plan
+from roughmdr.batch.resume.kept import Kept, Progress, progress_of, read_kept
 from roughmdr.batch.resume.so_far import LawSoFar, SoFar
-from roughmdr.report.documents import PartCellTable, PartsTable
+from roughmdr.report.documents import LawTable, PartCellTable, PartsTable
 from roughmdr.report.result_document import swept_table
 from roughmdr.scene.sweep import describe_cell
 from roughmdr.schema.units import format_quantity
@@ -29,7 +31,7 @@ def describe_parts(kept: Kept, *, cells: bool = False) -> str:
         lines.append(("failed", f"{len(kept.failed)} runs ({reason}); the next batch repeats them"))
     if kept.began:
         lines.append(("begun", f"{kept.began}; something was kept last at {kept.last}"))
-    lines.append(("at work", "no run: this part is done" if kept.complete and kept.holder is None else _at_work(kept)))
+    lines.append(("at work", _at_work(kept)))
     if kept.complete:
         lines.append(("when all are", printable(f"roughmdr join {shlex.quote(str(kept.output))}")))
     else:
@@ -44,6 +46,14 @@ def describe_progress(kept: Kept, progress: Progress, seconds: float) -> str:
     return told if left <= 0 or not math.isfinite(seconds) else f"{told}; about {format_seconds(left * seconds)} left"
 
 
+def describe_shares(folders: list[Path]) -> str:
+    """Return how far each of the shares of a batch is, of those whose folders are there."""
+    shares = [(folder, read_kept(folder)) for folder in folders]
+    return format_table(
+        [(folder.name, f"{_counted(kept, progress_of(kept))}; at work: {_at_work(kept)}") for folder, kept in shares]
+    )
+
+
 def law_lines(progress: Progress, law: LawSoFar) -> list[tuple[str, str]]:
     """Return the mean law so far with its standard error, where it is known, at a few steps of the path."""
     assert progress.plan is not None  # or there would be no law
@@ -51,7 +61,8 @@ def law_lines(progress: Progress, law: LawSoFar) -> list[tuple[str, str]]:
     cell, branch, unit = plan.cells[law.cell], plan.coordinates()["branch"].values, LAW_VARIABLES[law.variable].units
     values = next(islice(plan.scene.sweep.cells(), law.cell, None))
     where = f", {printable(describe_cell(values))}" if values else ""
-    name, runs = law.variable.replace("_", " "), f"{law.moments.size} run{'s' * (law.moments.size > 1)}"
+    name, some = law.variable.replace("_", " "), f" of {law.kept}" if law.moments.size < law.kept else ""
+    runs = f"{law.moments.size}{some} run{'s' * (law.kept > 1)}"
     return [("law so far", f"mean {name} over {runs}{where}")] + [
         (
             "",
@@ -66,7 +77,7 @@ def law_lines(progress: Progress, law: LawSoFar) -> list[tuple[str, str]]:
 def parts_table(kept: Kept) -> PartsTable:
     """Return the same as a table for --json."""
     progress = progress_of(kept)
-    scene = progress.scene
+    scene, law = progress.scene, SoFar(progress).law(kept)
     return {
         "title": None if scene is None else scene.title,
         "folder": str(kept.folder),
@@ -77,6 +88,7 @@ def parts_table(kept: Kept) -> PartsTable:
         "failed": len(kept.failed),
         "remark": kept.remark or None,
         "cells": [_cell(progress, number) for number in range(len(progress.done))],
+        "law": None if law is None else _law(progress, law),
         "began": kept.began or None,
         "last": kept.last or None,
         "holder": None if kept.holder is None else kept.holder._asdict(),
@@ -87,10 +99,29 @@ def parts_table(kept: Kept) -> PartsTable:
     }
 
 
+def _law(progress: Progress, law: LawSoFar) -> LawTable:
+    assert progress.plan is not None  # or there would be no law
+    found = law.moments.mean.tolist(), law.moments.standard_error.tolist()
+    mean, error = ([each if math.isfinite(each) else None for each in numbers] for numbers in found)
+    return {
+        "swept": _swept(progress.plan, law.cell),
+        "variable": law.variable,
+        "runs": law.moments.size,
+        "control": progress.plan.control,
+        "values": progress.plan.cells[law.cell].values[law.steps].tolist(),
+        "mean": mean,
+        "standard_error": error,
+    }
+
+
+def _swept(plan: Plan, number: int) -> dict[str, float | str]:
+    return swept_table(plan.scene.sweep.coordinates(), plan.sizes, number)
+
+
 def _cell(progress: Progress, number: int) -> PartCellTable:
     assert progress.plan is not None  # or there would be no cells
     return {
-        "swept": swept_table(progress.plan.scene.sweep.coordinates(), progress.plan.sizes, number),
+        "swept": _swept(progress.plan, number),
         "done": progress.done[number],
         "failed": progress.failed[number],
         "total": progress.realizations if progress.total is not None else None,
@@ -127,6 +158,8 @@ def _cells(kept: Kept, progress: Progress, most: int) -> list[tuple[str, str]]:
 
 
 def _at_work(kept: Kept) -> str:
+    if kept.complete and kept.holder is None:
+        return "no run: this part is done"
     if kept.holder is None:
         ended = "runs failed, or it was interrupted" if kept.failed else "it was interrupted, or is about to end"
         return f"no run: {ended}"

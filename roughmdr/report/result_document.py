@@ -23,6 +23,7 @@ from roughmdr.result.model_errors import largest_of_result
 from roughmdr.result.trust import trust_of_result
 from roughmdr.result.view import ResultView, swept_values
 from roughmdr.stages import STAGES
+from roughmdr.storage.files import size_of
 from roughmdr.storage.labelled import Array
 from roughmdr.variables import RUN_DIAGNOSTICS, STATUSES, YIELDED, YIELDING
 
@@ -33,7 +34,7 @@ def result_table(result: ResultView, file: Path | None, elapsed: float | None = 
     table: ResultTable = {
         "title": attrs["title"],
         "file": None if file is None else str(file),
-        "file_size": None if file is None else file.stat().st_size,
+        "file_size": None if file is None else size_of(file),
         "sizes": sizes,
         "coordinates": coordinate_tables(result.coordinates, sizes),
         "realizations": result.realizations,

@@ -19,6 +19,7 @@ from roughmdr.schema.keywords import named_keywords
 from roughmdr.schema.units import format_quantity
 from roughmdr.schema.wording import format_bytes, format_seconds, format_table, printable, under
 from roughmdr.stages import STAGES
+from roughmdr.storage.files import size_of
 from roughmdr.storage.labelled import Array, Labelled
 from roughmdr.variables import DONE, FAILED, LATERAL, TIME
 
@@ -260,4 +261,4 @@ def describe(result: ResultView, file: Path | None, *, cells: bool) -> str:
     """Return that text of a result that was read, from ``file`` unless that is None."""
     if cells:
         return describe_cells(result)
-    return f"{describe_result(result)}\n{describe_origin(result, None if file is None else file.stat().st_size)}"
+    return f"{describe_result(result)}\n{describe_origin(result, None if file is None else size_of(file))}"

@@ -3,13 +3,10 @@
 import os
 import re
 from collections.abc import Callable, Iterable, Mapping
-from contextlib import suppress
 from functools import partial, reduce
 from operator import getitem
 from pathlib import Path
 from typing import Any, NamedTuple
-
-import numpy as np
 
 from roughmdr.errors import Fault, RoughmdrError, SceneError
 from roughmdr.scene.cells import validate
@@ -17,7 +14,7 @@ from roughmdr.scene.keys import set_key
 from roughmdr.scene.scene import Scene
 from roughmdr.scene.sweep import flatten
 from roughmdr.schema.toml_text import key_lines, line_of, parse_toml, unquote_key
-from roughmdr.schema.units import as_text
+from roughmdr.schema.units import to_plain
 from roughmdr.schema.wording import printable, short_repr
 from roughmdr.storage.files import check_regular_file, is_open_pipe, is_zarr
 from roughmdr.storage.reading import read_attribute, read_dimensions
@@ -73,7 +70,7 @@ def _read_table(source: object) -> tuple[Path | None, str, str, dict[str, Any]]:
     if isinstance(source, Scene):
         return source.file, "scene", "", parse_toml(source.toml)
     if isinstance(source, dict):
-        return None, "scene", "", _to_plain(source)
+        return None, "scene", "", to_plain(source)
     if not isinstance(source, str | os.PathLike):
         raise SceneError(f"scene is {short_repr(source)}; it must be a path, a dictionary or a Scene")
     path, label = Path(source), str(source)
@@ -152,7 +149,7 @@ def _named_change(key: object, value: object) -> _Change:
     dotted = unquote_key(key) if isinstance(key, str) else ""
     if not all(dotted.split(".")):
         raise SceneError(f"set: {short_repr(key)} is no key; expected dotted keys, like 'adhesion.work'")
-    return _Change("set", printable(dotted), dotted, _to_plain(value))
+    return _Change("set", printable(dotted), dotted, to_plain(value))
 
 
 def _apply_change(table: dict[str, Any], change: _Change) -> None:
@@ -200,23 +197,6 @@ def _parse_value(text: str) -> Any:
     except ValueError:
         return text
     return table["value"] if len(table) == 1 else text
-
-
-def _to_plain(value: Any) -> Any:
-    """Convert arrays, tuples and sets to lists, numpy's numbers to Python's, and quantities of pint to strings."""
-    if isinstance(value, dict):
-        return {key: _to_plain(entry) for key, entry in value.items()}
-    if isinstance(value, set | frozenset):
-        return sorted(map(_to_plain, value), key=repr)
-    if isinstance(value, Path):
-        return str(value)
-    if isinstance(value, np.ndarray | np.generic):
-        return value.tolist()
-    if isinstance(value, list | tuple):
-        return [_to_plain(entry) for entry in value]
-    with suppress(RoughmdrError):  # the reader of the key will refuse it
-        return as_text(value)
-    return value
 
 
 def _normalise(table: dict[str, Any], folder: Path) -> None:

@@ -13,6 +13,7 @@ from pydantic_core import PydanticCustomError
 from roughmdr.errors import Fault, SceneError
 from roughmdr.schema.quantities import EntryError
 from roughmdr.schema.section import reader_of
+from roughmdr.schema.units import to_plain
 from roughmdr.schema.wording import close_matches, printable, short_repr, suggestion
 
 _Sections = list[type[BaseModel]]
@@ -27,7 +28,7 @@ def mismatch(key: str, message: str) -> PydanticCustomError:
 def validated(declared: Any, table: Mapping[str, Any], key: str) -> Any:
     """Return a table, the argument ``key`` of a Python function, as it is declared; SceneError with all its faults."""
     try:
-        return TypeAdapter(declared).validate_python(table)
+        return TypeAdapter(declared).validate_python(to_plain(table))
     except ValidationError as error:
         faults = find_faults(error, dict(table), declared)
         raise SceneError.of([fault._replace(key=f"{key}.{fault.key}".removesuffix(".")) for fault in faults]) from None

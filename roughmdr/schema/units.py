@@ -6,7 +6,10 @@ from contextlib import suppress
 from decimal import Decimal
 from functools import cache
 from numbers import Real
+from pathlib import Path
 from typing import Any
+
+import numpy as np
 
 from roughmdr.errors import RoughmdrError
 from roughmdr.schema.wording import short_repr
@@ -85,7 +88,10 @@ _QUANTITY = re.compile(rf"\s*({NUMBER})\s*(.*?)\s*")
 
 
 def quantity(value: object, dimension: str) -> float:
-    """A number in SI, or a string with a unit of the dimension, as a float in SI; RoughmdrError where it is neither."""
+    """A number in SI, a string with a unit of the dimension or a quantity of pint as a float in SI; RoughmdrError where
+    it is none of these.
+    """
+    value = as_text(value)
     wanted = f"expected a number in {dimension} or a string like {_EXAMPLES.get(dimension, 'a plain number')}"
     wanted = "expected a plain number" if dimension == DIMENSIONLESS else wanted
     match = _QUANTITY.fullmatch(value) if isinstance(value, str) else None
@@ -122,6 +128,23 @@ def as_text(value: Any) -> Any:
         unit = fitting[-1]  # N/m rather than J/m^2, since it is read for both
         value = value.to(unit)
     return _with_unit(value.magnitude.tolist() if hasattr(value.magnitude, "tolist") else value.magnitude, unit)
+
+
+def to_plain(value: Any) -> Any:
+    """Convert arrays, tuples and sets to lists, numpy's numbers to Python's, and quantities of pint to strings."""
+    if isinstance(value, dict):
+        return {key: to_plain(entry) for key, entry in value.items()}
+    if isinstance(value, set | frozenset):
+        return sorted(map(to_plain, value), key=repr)
+    if isinstance(value, Path):
+        return str(value)
+    if isinstance(value, list | tuple):
+        return [to_plain(entry) for entry in value]
+    if not hasattr(value, "magnitude"):
+        return value.tolist() if isinstance(value, np.ndarray | np.generic) else value
+    with suppress(RoughmdrError):  # the reader of the key will refuse it
+        return as_text(value)
+    return value
 
 
 def _with_unit(numbers: Any, unit: str) -> Any:

@@ -17,7 +17,7 @@ from roughmdr.numerics.arguments import Floats
 from roughmdr.numerics.rebind import rebuilt
 from roughmdr.schema.arguments import floats_in_si
 from roughmdr.schema.keywords import check_keywords
-from roughmdr.schema.units import as_text, quantity
+from roughmdr.schema.units import quantity
 from roughmdr.schema.wording import short_repr
 from roughmdr.shapes.profile import Profile, zero
 
@@ -151,7 +151,7 @@ class Shape(ABC):
         for name, value in parameters.items():
             if isinstance(value, str) or hasattr(value, "magnitude"):
                 try:
-                    parameters[name] = quantity(as_text(value), self.units[name])
+                    parameters[name] = quantity(value, self.units[name])
                 except RoughmdrError as error:
                     raise ShapeError(f"{self.name}: {name} is {short_repr(value)}: {error}") from None
             check_one(self.name, name, parameters[name])

@@ -73,6 +73,8 @@ def check_writable(path: Path, inputs: Iterable[Path] = (), *, as_zarr: bool = F
         if as_zarr:
             if target.exists() and not is_zarr(target):
                 raise StoreError(f"{label}: is no Zarr store; the output must be one, or not be there")
+            if target.exists() and (others := _others_in(target)):
+                raise StoreError(f"{label}: holds {others[0]}, which is no part of it and would be lost")
         elif target.is_dir():
             raise StoreError(f"{label}: is a folder; the output must be a file")
         elif target.exists() and not target.is_file():
@@ -81,6 +83,8 @@ def check_writable(path: Path, inputs: Iterable[Path] = (), *, as_zarr: bool = F
             raise StoreError(f"{label}: is an input; the output must be another file")
         if not target.parent.is_dir():
             raise StoreError(f"{label}: the folder {target.parent} does not exist")
+        if is_zarr(target.parent):
+            raise StoreError(f"{label}: {target.parent} is a Zarr store; the output must be outside of it")
         if not _is_utf8(path.absolute()) or not _is_utf8(target.absolute()):
             raise StoreError(f"{str(path)!r}: the name is not UTF-8, and netCDF could not read it again; give another")
         tempfile.TemporaryFile(dir=target.parent).close()  # without a name where it can, so that a kill leaves none
@@ -91,6 +95,18 @@ def check_writable(path: Path, inputs: Iterable[Path] = (), *, as_zarr: bool = F
 def is_zarr(path: Path) -> bool:
     """Return whether ``path`` is the folder of a Zarr store, of format 3, or of format 2, which others write."""
     return any(os.path.isfile(path / name) for name in ("zarr.json", ".zgroup"))
+
+
+def _others_in(store: Path) -> list[str]:
+    """Return the names of what lies in the folder of a Zarr store beside its arrays and what the format keeps there."""
+    arrays = {each.name for each in store.iterdir() if (each / "zarr.json").is_file() or (each / ".zarray").is_file()}
+    return sorted({each.name for each in store.iterdir() if each.name != "zarr.json" and each.name[0] != "."} - arrays)
+
+
+def size_of(path: Path) -> int:
+    """Return the size [byte] of a file, or of all files of a Zarr store."""
+    files = path.rglob("*") if path.is_dir() else [path]
+    return sum(each.stat().st_size for each in files if each.is_file())
 
 
 def check_ending(path: Path, kind: str, endings: Sequence[str]) -> str:

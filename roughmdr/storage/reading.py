@@ -3,7 +3,7 @@
 from pathlib import Path
 
 from roughmdr.errors import RoughmdrError
-from roughmdr.storage.files import is_zarr
+from roughmdr.storage.files import ZARR_ENDING, is_zarr
 from roughmdr.storage.labelled import Labelled
 from roughmdr.storage.netcdf_reading import read_netcdf, read_netcdf_attributes, read_netcdf_dimensions
 from roughmdr.storage.zarr_store import read_zarr, read_zarr_attributes, read_zarr_dimensions
@@ -11,17 +11,24 @@ from roughmdr.storage.zarr_store import read_zarr, read_zarr_attributes, read_za
 
 def read_arrays(path: Path) -> Labelled:
     """Return all of a file; RoughmdrError if it cannot be read."""
-    return read_zarr(path) if is_zarr(path) else read_netcdf(path)
+    return read_zarr(path) if _is_store(path) else read_netcdf(path)
 
 
 def read_dimensions(path: Path) -> dict[str, tuple[str, ...]]:
     """Return the dimensions of each array of a file; RoughmdrError if it cannot be read."""
-    return read_zarr_dimensions(path) if is_zarr(path) else read_netcdf_dimensions(path)
+    return read_zarr_dimensions(path) if _is_store(path) else read_netcdf_dimensions(path)
 
 
 def read_attribute(path: Path, name: str) -> str:
     """Return one attribute of a file; RoughmdrError if it cannot be read, or is missing, or is no string."""
-    value = (read_zarr_attributes(path) if is_zarr(path) else read_netcdf_attributes(path)).get(name)
+    value = (read_zarr_attributes(path) if _is_store(path) else read_netcdf_attributes(path)).get(name)
     if not isinstance(value, str):
         raise RoughmdrError(f"it has no {name}" if value is None else f"the attribute {name} is no text")
     return value
+
+
+def _is_store(path: Path) -> bool:
+    """Return whether a Zarr store is to be read; RoughmdrError where a folder named so is none."""
+    if path.suffix.lower() == ZARR_ENDING and path.is_dir() and not is_zarr(path):
+        raise RoughmdrError("is no Zarr store: it has no zarr.json")
+    return is_zarr(path)

@@ -35,14 +35,17 @@ def write_zarr(data: Labelled, path: Path, folder: Path | None = None) -> None:
     with replace_folder_atomically(path, folder) as temporary, warnings.catch_warnings(action="ignore"):
         group = zarr.open_group(temporary, mode="w", zarr_format=3)
         group.attrs.update({name: _plain(value) for name, value in data.attrs.items()})
-        for name, array in (data.coordinates | data.variables).items():
-            _write(group, name, array, {key: _plain(value) for key, value in attributes_in_file(data, name).items()})
+        arrays = data.coordinates | data.variables
+        chunks = _chunks(max((array for array in arrays.values()), key=lambda array: array.values.size))
+        for name, array in arrays.items():
+            attrs = {key: _plain(value) for key, value in attributes_in_file(data, name).items()}
+            _write(group, name, array, attrs, tuple(chunks.get(dim, data.sizes[dim]) for dim in array.dims))
         zarr.consolidate_metadata(temporary)
 
 
-def _write(group: "zarr.Group", name: str, array: Array, attrs: dict[str, Any]) -> None:
+def _write(group: "zarr.Group", name: str, array: Array, attrs: dict[str, Any], chunks: tuple[int, ...]) -> None:
     values = array.values
-    is_text, chunks = values.dtype.kind in "OU", _chunks(values.shape)
+    is_text = values.dtype.kind in "OU"
     stored = group.create_array(
         name,
         shape=values.shape,
@@ -64,13 +67,15 @@ def _blocks(shape: tuple[int, ...], chunks: tuple[int, ...]) -> Iterator[tuple[s
         yield tuple(slice(i * chunk, (i + 1) * chunk) for i, chunk in zip(first, chunks, strict=True))
 
 
-def _chunks(shape: tuple[int, ...]) -> tuple[int, ...]:
-    """Return the chunks of an array: all steps of as many realisations, and cells, as a chunk holds."""
-    chunks, room = list[int](), _CHUNK_SIZE
-    for size in reversed(shape):
-        chunks.insert(0, max(1, min(size, room)))
-        room //= chunks[0]
-    return tuple(chunks)
+def _chunks(largest: Array) -> dict[str, int]:
+    """Return the chunks of all arrays along each dimension of the largest: all steps of as many realisations, and
+    cells, as a chunk holds.
+    """
+    chunks, room = dict[str, int](), _CHUNK_SIZE
+    for dim, size in zip(reversed(largest.dims), reversed(largest.values.shape), strict=True):
+        chunks[dim] = max(1, min(size, room))
+        room //= chunks[dim]
+    return chunks
 
 
 def _plain(value: Any) -> Any:

@@ -1,5 +1,6 @@
 """The law so far of a batch that is not over: the same numbers as a result of the same runs has."""
 
+import json
 import re
 import sys
 from pathlib import Path
@@ -78,6 +79,21 @@ def test_of_a_sweep_the_first_cell_is_told_and_each_of_its_files_is_read_once(
     told = CliRunner().invoke(main, ["info", str(folder)]).output
     assert re.search(r"^law so far   mean force over 4 runs, adhesion\.work = 1 mJ/m\^2$", told, re.MULTILINE)
     assert re.search(r"^ {13}\S+ ± \S+ [um]N at separation 1 um, loading$", told, re.MULTILINE)
+    written = json.loads(CliRunner().invoke(main, ["info", str(folder), "--json"]).output)["parts"]["law"]
+    assert written == {
+        "swept": {"adhesion_work": 0.001},
+        "variable": "force",
+        "runs": 4,
+        "control": "separation",
+        "values": [2e-6, 1e-6],
+        "mean": second.moments.mean.tolist(),
+        "standard_error": second.moments.standard_error.tolist(),
+    }
+    for limit in ({"_FILES": 1}, {"_AT_ONCE": 0}):
+        with monkeypatch.context() as patch:
+            patch.setattr(module, *limit.popitem())
+            told = CliRunner().invoke(main, ["info", str(folder)]).output
+        assert "law so far   mean force over 2 of 4 runs, " in told
 
 
 def test_files_that_vanish_or_are_damaged_do_not_count(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

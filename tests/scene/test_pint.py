@@ -1,6 +1,7 @@
 """Quantities of pint stand where strings with a unit do, and units of results are read by cf-xarray's registry."""
 
 import math
+from pathlib import Path
 from typing import Any
 
 import cf_xarray.units
@@ -8,7 +9,8 @@ import numpy as np
 import pint
 import pint_xarray  # noqa: F401 - gives datasets their accessor
 import pytest
-from scenes import scene
+from scenes import ASPERITIES, scene
+from tips import MODULUS, Tip
 
 import roughmdr as rm
 from roughmdr.scene import read
@@ -68,6 +70,22 @@ def test_scenes_and_functions_take_them() -> None:
         for force in (np.array([1, 2]) * PINT.mN, [1 * PINT.mN, 2 * PINT.mN])
     ]
     np.testing.assert_array_equal(*depths)
+
+
+def test_asperities_fits_and_exports_take_them(tmp_path: Path) -> None:
+    lengths = ("1 mm", "50 um"), (1 * CF.mm, np.float64(50.0) * PINT.um)
+    made = [rm.generate({**ASPERITIES, "patch": patch, "radius": radius}, seed=1) for patch, radius in lengths]
+    assert made[0].equals(made[1])
+    tip = Tip("hertz", 1e-7, 1e6)
+    measured = tip.measure(np.random.default_rng(0), 20, ("constant", 0.01), 0.0)
+    pairs = (1 * PINT.MPa, 9000 * PINT.kPa), np.array([1, 9]) * PINT.MPa, ("1 MPa", "9 MPa")
+    for known in ("bounds", "priors"):
+        fits = [rm.fit(measured, tip.scene(), [MODULUS], **{known: {MODULUS: pair}}) for pair in pairs]
+        assert len({(float(fit.material_modulus), float(fit.material_modulus_high)) for fit in fits}) == 1
+    law, table = rm.run(scene(batch={"estimator": "expected"})), {"to": "lammps", "quantity": "force", "error": 0.05}
+    for name, distance in (("one.table", 1 * CF.mm), ("other.table", "1 mm")):
+        rm.export(law, tmp_path / name, distance=distance, **table)
+    assert (tmp_path / "one.table").read_text() == (tmp_path / "other.table").read_text()
 
 
 @pytest.mark.parametrize("wrong", [PINT.Quantity(3, "kg"), PINT.Quantity(3, "um"), PINT.Quantity(math.nan, "Pa")])

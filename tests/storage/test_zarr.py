@@ -69,6 +69,7 @@ def test_it_holds_what_the_netcdf_file_holds(folder: Path, name: str) -> None:
 def test_xarray_reads_it_chunk_by_chunk(folder: Path) -> None:
     with xr.open_zarr(folder / "out.zarr") as stored, xr.open_dataset(folder / "out.nc") as expected:
         assert stored.force.chunks is not None
+        assert stored.chunks.keys() == stored.sizes.keys()  # which needs those of all variables to agree
         assert set(stored.coords) == set(expected.coords)
         for name in expected.data_vars:
             if name != "run_time":
@@ -108,6 +109,32 @@ def test_a_run_goes_on_from_it(tmp_path: Path) -> None:
     with pytest.raises(rm.StoreError, match="holds results of another scene: seed was 7, is 8"):
         rm.run(scene(seed=8), tmp_path / "out.zarr")
     assert {path.name for path in tmp_path.iterdir()} == {"out.nc", "out.zarr"}
+
+
+@pytest.mark.parametrize("mine", ["notes.txt", "figures/one.png"])
+def test_what_else_lies_in_it_is_not_lost(tmp_path: Path, mine: str) -> None:
+    out = tmp_path / "out.zarr"
+    rm.run(scene(), out)
+    with pytest.raises(rm.StoreError, match=r"out\.zarr is a Zarr store; the output must be outside of it"):
+        rm.run(scene(), out / "other.zarr")
+    (out / mine).parent.mkdir(exist_ok=True)
+    (out / mine).write_text("kept")
+    with pytest.raises(rm.StoreError, match=rf"holds {mine[:5]}\w*(\.txt)?, which is no part of it and would be lost"):
+        rm.run(scene(batch={"realizations": 17}), out)
+    assert (out / mine).read_text() == "kept"
+
+
+def test_its_size_is_that_of_all_its_files(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(folder)
+    told = json.loads(CliRunner().invoke(main, ["info", "out.zarr", "--json"]).output)
+    sizes = [each.stat().st_size for each in (folder / "out.zarr").rglob("*") if each.is_file()]
+    assert told["result"]["file_size"] == sum(sizes) > max(sizes)
+
+
+def test_a_folder_that_is_no_store_is_told(tmp_path: Path) -> None:
+    (tmp_path / "out.zarr").mkdir()
+    with pytest.raises(rm.StoreError, match=r"out\.zarr: is no Zarr store: it has no zarr\.json"):
+        read_result(tmp_path / "out.zarr")
 
 
 def test_what_a_killed_writer_left_is_in_nobodys_way(tmp_path: Path) -> None:
@@ -179,7 +206,7 @@ def test_what_is_no_store_is_not_replaced(tmp_path: Path, there: str) -> None:
             rm.StoreError, match=r"out\.zarr: is no Zarr store; the output must be one, or not be there"
         ):
             rm.run(scene(), out, resume=resume)
-    with pytest.raises(rm.StoreError, match=r"out\.zarr: (is a folder|not a netCDF file)"):
+    with pytest.raises(rm.StoreError, match=r"out\.zarr: (is no Zarr store: it has no zarr|not a netCDF file)"):
         read_result(out)
     assert there == "empty" or (out if there == "file" else out / "mine").read_text() == "mine"
 
@@ -223,7 +250,9 @@ def test_damage_is_told(tmp_path: Path) -> None:
 @settings(deadline=None)
 @given(st.lists(st.integers(1, 2000), max_size=4))
 def test_chunks_are_small_and_cover_all_once(shape: list[int]) -> None:
-    chunks = zarr_store._chunks(tuple(shape))
+    dims = tuple("abcd"[: len(shape)])
+    along = zarr_store._chunks(Array(dims, np.broadcast_to(0.0, shape), {}))
+    chunks = tuple(along[dim] for dim in dims)
     assert np.prod(chunks, dtype=float) <= zarr_store._CHUNK_SIZE
     counts = [-(-size // chunk) for size, chunk in zip(shape, chunks, strict=True)]
     if np.prod(counts, dtype=float) < 1e4:

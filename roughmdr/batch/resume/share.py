@@ -28,7 +28,8 @@ class Share(NamedTuple):
         match = _TEXT.fullmatch(text)
         share = cls(*map(int, match.groups())) if match else None
         if share is None or share.number > share.total:
-            raise RoughmdrError(f"part is {text!r}; it must be a number and how many parts there are, as in 7/100")
+            told = "it must be a number from 1 on, and how many parts there are, no fewer, as in 7/100"
+            raise RoughmdrError(f"part is {text!r}; {told}")
         return share
 
     @classmethod

@@ -13,8 +13,8 @@ from roughmdr.batch.task_result import TaskResult
 from roughmdr.numerics.arguments import Ints
 
 _STEPS = 6  # steps told, of which one is the closest approach, also where unloading follows
-
-_FILES = 64  # most task results read at one look, of 16 MB at most each; more follow at the next
+_FILES = 2000  # most task results read at one look, which takes seconds; more follow at the next
+_AT_ONCE = 2**30  # most bytes of curves read at one look, likewise
 
 
 class LawSoFar(NamedTuple):
@@ -24,6 +24,7 @@ class LawSoFar(NamedTuple):
     variable: str
     steps: Ints
     moments: Moments  # [step]
+    kept: int  # runs of the cell that are kept, of which some may not be read yet
 
 
 class SoFar:
@@ -48,14 +49,19 @@ class SoFar:
             return None
         told = self.progress.keys[cell]
         unread = (each for each in kept.files if each not in self._read and not told.isdisjoint(each.keys))
+        room = _AT_ONCE
         for file in islice(unread, _FILES):
             self._read.add(file)
             result = read_task_result(kept.folder, file.name, file.sha256)
             if result is not None:
                 self._add(result)
+                room -= sum(each.nbytes for each in result.moments)
+            if room < 0:
+                break
         if not (known := [self._moments[key] for key in sorted(told) if key in self._moments]):
             return None
-        return LawSoFar(cell, self._variable, self._steps, max(known, key=lambda each: each.size))
+        there = sum(count for key, count in (kept.by_key or {}).items() if key in told)
+        return LawSoFar(cell, self._variable, self._steps, max(known, key=lambda each: each.size), there)
 
     def _add(self, result: TaskResult) -> None:
         if self._variable not in result.variables or result.moments[0].shape[-1] <= self._steps[-1]:

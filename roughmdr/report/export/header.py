@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Iterator
+from decimal import ROUND_UP, Context
 
 import numpy as np
 
@@ -29,6 +30,10 @@ def origin_lines(cell: ResultView, words: str) -> Iterator[tuple[str, str]]:
     yield "made by", f"{cell.attrs['source']}, seed {cell.attrs['seed']}"
 
 
+def _rounded_up(error: float) -> str:
+    return f"{float(Context(prec=2, rounding=ROUND_UP).create_decimal(repr(float(error)))):.2g}"
+
+
 def table_lines(
     cell: ResultView, table: Table, quantity: Quantity, law: Law, units: UnitSystem
 ) -> Iterator[tuple[str, str]]:
@@ -53,9 +58,9 @@ def table_lines(
     over = "the pressure" if quantity.over_pressure else "the overclosure"
     yield (
         "interpolation error",
-        f"lines over {over} are within {table.error:.2g} of the largest value, and where that is above "
-        f"{RELATIVE_FROM:g} of it within {table.relative_error:.2g} of the value itself, jumps between the steps "
-        f"included: estimated from the steps, which holds in {100 * CONFIDENCE:g} % of cases",
+        f"lines over {over} are within {_rounded_up(table.error)} of the largest value, and where that is above "
+        f"{RELATIVE_FROM:g} of it within {_rounded_up(table.relative_error)} of the value itself, jumps between the "
+        f"steps included: estimated from the steps, which holds in {100 * CONFIDENCE:g} % of cases",
     )
     if math.isfinite(table.statistical_error):
         yield (
