@@ -85,7 +85,7 @@ def format_table(lines: Iterable[tuple[str, str]]) -> str:
 
 def format_seconds(seconds: float) -> str:
     """Format a time in seconds, minutes or hours."""
-    if seconds < 100.0:
+    if seconds < 99.5:
         return f"{seconds:.2g} s"
     return f"{seconds / 60.0:.3g} min" if seconds < 6000.0 else f"{seconds / 3600.0:.3g} h"
 
