@@ -148,7 +148,8 @@ def _with_known(parameter: Parameter, reader: Reader, known: Known) -> Parameter
 
 def _pair(name: str, given: Any, readers: tuple[Reader, Reader]) -> tuple[float, float]:
     """Return two numbers in SI that a user gave; RoughmdrError where they are none."""
-    given = as_text(given.tolist() if isinstance(given, np.ndarray) else given)
+    given = given.tolist() if isinstance(given, np.ndarray) else given
+    given = as_text(given) if hasattr(given, "magnitude") else given
     if not (isinstance(given, list | tuple) and len(given) == 2 and not any(isinstance(one, dict) for one in given)):
         raise RoughmdrError(f"has {name} = {short_repr(given)}; expected two numbers")
     try:
