@@ -42,7 +42,13 @@ def prospect_lines(prospect: "Prospect") -> Iterator[tuple[str, str]]:
     if all("pressure" in cell.law.variables for cell in cells):
         paired = prospect.interaction is not None and prospect.interaction.model == "pairwise"
         told = "estimated from a small part of the asperities" if paired else "as expected"
-        yield "pressure", f"{over_cells('Pa', pressure_at_closest)} at closest approach, {told}"
+        if lost := sum(math.isnan(pressure_at_closest(cell)) for cell in cells):
+            yield (
+                "pressure",
+                f"not known at closest approach: no equilibrium is found there in {lost} of {len(cells)} cells",
+            )
+        else:
+            yield "pressure", f"{over_cells('Pa', pressure_at_closest)} at closest approach, {told}"
         if any(largest_tension(cell) > 0.0 for cell in cells):
             yield "", f"{over_cells('Pa', largest_tension)} is about the largest tension"
     tabor = min(cell.law.tabor for cell in cells)
@@ -73,15 +79,15 @@ def prospect_lines(prospect: "Prospect") -> Iterator[tuple[str, str]]:
 
 
 def pressure_at_closest(cell: "Foreseen") -> float:
-    """Return the pressure of a cell with a nominal area at its closest approach [Pa]."""
+    """Return the pressure of a cell with a nominal area at its closest approach [Pa]; NaN without an equilibrium."""
     return float(cell.law.variables["pressure"][np.argmin(cell.path.separation)])
 
 
 def largest_tension(cell: "Foreseen") -> float:
     """Return the largest tension of a cell with a nominal area [Pa]; 0 for none, or for what is but rounding."""
     pressure = cell.law.variables["pressure"]
-    tension = max(0.0, -float(pressure.min()))
-    return tension if tension > _ROUNDING * float(pressure.max()) else 0.0
+    tension = -float(np.nanmin(pressure, initial=0.0))
+    return tension if tension > _ROUNDING * float(np.nanmax(pressure, initial=0.0)) else 0.0
 
 
 def implausible_lines(plan: "Plan", prospect: "Prospect") -> list[str]:

@@ -10,12 +10,14 @@ import pytest
 import tomli_w
 import xarray as xr
 from batches import assert_same
+from command import roughmdr
 from forms import large
 from scenes import ASPERITIES, scene
 
 import roughmdr as rm
 from roughmdr.batch.plan import make_plan
 from roughmdr.interaction import newton, solve
+from roughmdr.interaction.jkr import jumps
 from roughmdr.runner.backend import Backend
 from roughmdr.runner.run import execute
 from roughmdr.scene import read
@@ -153,3 +155,38 @@ def test_contacts_that_do_not_come_to_rest_are_marked(
     else:
         assert found.numerical_error >= 1e-3
         assert found.marked_steps == 7.0
+
+
+def overlapping(length: float) -> dict[str, Any]:
+    """A scene that goes so deep that contacts overlap by most of their radii."""
+    asperities = ASPERITIES | {"count": 20, "patch": 1e-4 * length, "placement": "random", "radius": 5e-5 * length}
+    return scene(
+        seed=7,
+        asperities=asperities | {"height": {"distribution": "normal", "std": 1e-6 * length}},
+        adhesion={"model": "jkr", "work": 0.05 * length},
+        interaction=PAIRWISE,
+        path={"separation": [*np.linspace(6e-6, -0.9e-6, 100) * length]},
+        batch={"realizations": 1},
+    )
+
+
+@pytest.mark.parametrize("length", [1e-9, 1.0])
+def test_contacts_that_make_and_lose_each_other_without_end_are_lost(
+    length: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    count, jump = list[int](), jumps.jump
+    monkeypatch.setattr(jumps, "jump", lambda *given: count.append(1) or jump(*given))
+    with pytest.warns(rm.errors.LimitWarning):
+        law = rm.run(overlapping(length))
+    lost = np.isnan(law.force[0].to_numpy())
+    assert lost[-1]
+    assert not lost[:90].any()
+    assert law.marked_steps[0] >= lost.sum()
+    assert len(count) < 5 * 20  # and not 10 for each asperity in each of the last avalanches
+
+
+def test_a_plan_says_where_no_equilibrium_is_found(tmp_path: Path) -> None:
+    (tmp_path / "scene.toml").write_text(tomli_w.dumps(overlapping(1.0)))
+    told = roughmdr("plan", str(tmp_path / "scene.toml")).stdout
+    assert "pressure     not known at closest approach: no equilibrium is found there in 1 of 1 cells" in told
+    assert "nan" not in told

@@ -17,7 +17,7 @@ from roughmdr.interaction.jkr import coincident, contacts, lone
 from roughmdr.interaction.jkr.branch import NoEquilibriumError
 from roughmdr.interaction.jkr.equilibrium import Drive, PairProblem, State, among, evaluate, no_field, part_of
 from roughmdr.interaction.jkr.events import Event, advance
-from roughmdr.interaction.jkr.jumps import Avalanche, avalanche
+from roughmdr.interaction.jkr.jumps import Avalanche, Recurrence, avalanche
 from roughmdr.interaction.jkr.lone import Surface
 from roughmdr.interaction.placed_asperities import Placed
 from roughmdr.interaction.settings import Interaction
@@ -134,9 +134,11 @@ class Front(Placed):
             near = state.gap + max(state.separation - h, 0.0) > -margin
             self._look_at(np.flatnonzero(near | state.inside))
             few, kept, pieces = self.window, self.near_contact, list[Piece]()
-            part, event = part_of(few, kept, state), None
+            part, event, met = part_of(few, kept, state), None, Recurrence()
             while not pieces or event is not None:
                 end, event = advance(few, part, Drive(h - part.separation, no_field(few)))
+                if event is not None:
+                    met.note(event, end)
                 rest, one = (end, None) if event is None else avalanche(few, end, event)
                 bare = [each._replace(factors=None) for each in (part, end, rest)]  # a long way has many, each large
                 pieces.append(Piece(few, kept, bare[0], bare[1], event, one, bare[2]))

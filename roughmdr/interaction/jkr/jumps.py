@@ -1,5 +1,6 @@
 """Jumps of adhesive contacts at one separation: one after the other, until all are at rest."""
 
+import math
 from typing import NamedTuple
 
 import numpy as np
@@ -11,7 +12,26 @@ from roughmdr.interaction.jkr.events import Event, advance
 from roughmdr.interaction.jkr.lone import Surface
 from roughmdr.interaction.jkr.newton import at_rest
 
-_MAX_JUMPS = 10  # jumps of an avalanche over the number of asperities: more repeat themselves without rest
+_MAX_JUMPS = 10  # jumps of an avalanche over the number of asperities: more come to no rest
+_SAME = 1e-9  # relative difference of two sums of loads, below which contacts come back to where they have been
+
+
+class Recurrence:
+    """Events on a way of the flat, with the sum of the loads at each, to find one that comes back."""
+
+    def __init__(self) -> None:
+        self._loads: dict[Event, float] = {}
+
+    def note(self, event: Event, state: State) -> None:
+        """Note an event; NoEquilibriumError where it was met in the same state before.
+
+        Each jump loses energy, so that a state comes back only where contacts that overlap make and lose each other
+        without end.
+        """
+        load = float(state.load.sum())
+        if abs(load - self._loads.get(event, math.inf)) <= _SAME * abs(load):
+            raise NoEquilibriumError
+        self._loads[event] = load
 
 
 class Avalanche(NamedTuple):
@@ -60,9 +80,10 @@ def avalanche(problem: PairProblem, state: State, event: Event) -> tuple[State, 
 
     The load that a jump sheds is handed to the others little by little; at the next fold another contact jumps.
     """
-    before, size = energy(problem, state), 0
+    before, size, met = energy(problem, state), 0, Recurrence()
     next_event: Event | None = event
     while next_event is not None:
+        met.note(next_event, state)
         if size > _MAX_JUMPS * state.t.size:
             raise NoEquilibriumError
         state, size = jump(problem, state, next_event), size + 1
