@@ -36,7 +36,7 @@ def write_zarr(data: Labelled, path: Path, folder: Path | None = None) -> None:
         group = zarr.open_group(temporary, mode="w", zarr_format=3)
         group.attrs.update({name: _plain(value) for name, value in data.attrs.items()})
         arrays = data.coordinates | data.variables
-        chunks = _chunks(max((array for array in arrays.values()), key=lambda array: array.values.size))
+        chunks = _chunks(max(arrays.values(), key=lambda array: array.values.size))
         for name, array in arrays.items():
             attrs = {key: _plain(value) for key, value in attributes_in_file(data, name).items()}
             _write(group, name, array, attrs, tuple(chunks.get(dim, data.sizes[dim]) for dim in array.dims))
