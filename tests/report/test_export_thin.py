@@ -8,6 +8,7 @@ from hypothesis import given, settings, strategies as st
 from numpy.typing import NDArray
 
 from roughmdr.errors import StoreError
+from roughmdr.report.export.header import rounded_up
 from roughmdr.report.export.table import RELATIVE_FROM, knots, tolerances
 from roughmdr.report.export.units import UnitSystem
 
@@ -101,3 +102,10 @@ def test_units_in_any_order_make_a_system(text: str, names: tuple[str, ...]) -> 
 def test_units_that_make_none_are_refused(text: str, says: str) -> None:
     with pytest.raises(StoreError, match=says):
         UnitSystem.read(text)
+
+
+@settings(deadline=None)
+@given(st.floats(1e-12, 1e12))
+def test_a_stated_error_is_not_below_the_error_and_has_two_digits(error: float) -> None:
+    assert error <= float(rounded_up(error)) <= 1.1 * error * (1.0 + 1e-12)
+    assert rounded_up(float(rounded_up(error))) == rounded_up(error)

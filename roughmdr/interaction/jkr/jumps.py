@@ -79,6 +79,7 @@ def avalanche(problem: PairProblem, state: State, event: Event) -> tuple[State, 
     """Return the state at rest after a jump and all that it sets off, one jump at a time.
 
     The load that a jump sheds is handed to the others little by little; at the next fold another contact jumps.
+    NoEquilibriumError where they come to no rest.
     """
     before, size, met = energy(problem, state), 0, Recurrence()
     next_event: Event | None = event

@@ -30,7 +30,8 @@ def origin_lines(cell: ResultView, words: str) -> Iterator[tuple[str, str]]:
     yield "made by", f"{cell.attrs['source']}, seed {cell.attrs['seed']}"
 
 
-def _rounded_up(error: float) -> str:
+def rounded_up(error: float) -> str:
+    """Return an error with two digits, rounded up so that it still holds."""
     return f"{float(Context(prec=2, rounding=ROUND_UP).create_decimal(repr(float(error)))):.2g}"
 
 
@@ -58,8 +59,8 @@ def table_lines(
     over = "the pressure" if quantity.over_pressure else "the overclosure"
     yield (
         "interpolation error",
-        f"lines over {over} are within {_rounded_up(table.error)} of the largest value, and where that is above "
-        f"{RELATIVE_FROM:g} of it within {_rounded_up(table.relative_error)} of the value itself, jumps between the "
+        f"lines over {over} are within {rounded_up(table.error)} of the largest value, and where that is above "
+        f"{RELATIVE_FROM:g} of it within {rounded_up(table.relative_error)} of the value itself, jumps between the "
         f"steps included: estimated from the steps, which holds in {100 * CONFIDENCE:g} % of cases",
     )
     if math.isfinite(table.statistical_error):
