@@ -7,6 +7,7 @@ import re
 import shutil
 import subprocess
 import sys
+import tempfile
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -81,7 +82,7 @@ class Batch:
         self, folder: Path, *options: object, runs_per_task: int = 4, code: str = "", scene: str = "scene.toml"
     ):
         self.folder = folder
-        self._said = (folder.parent / f"{folder.name}.stderr").open("w+")
+        self._said = tempfile.NamedTemporaryFile("w+", suffix=".stderr")  # noqa: SIM115 - open until the end
         command = [sys.executable, "-c", f"{_OF_SMALL_TASKS}{code}\n{_CLI}", str(runs_per_task)]
         self.process = subprocess.Popen(
             [*command, "run", scene, "-o", "out.nc", *map(str, options)],
@@ -91,6 +92,10 @@ class Batch:
             start_new_session=True,
         )
         self.pid = self.process.pid
+
+    def said_so_far(self) -> str:
+        """What it has said by now on the standard error stream."""
+        return Path(self._said.name).read_text()
 
     def end(self) -> tuple[int, str]:
         """Wait for its end: exit status, and what it said on the standard error stream."""

@@ -60,6 +60,16 @@ class TaskResult(NamedTuple):
         """Number of realisations in all rows."""
         return int(self.size.sum())
 
+    @property
+    def runs(self) -> list[tuple[str, int, int]]:
+        """Key of a cell, first realisation and number after the last of each range of realisations, in order."""
+        found = list[tuple[str, int, int]]()
+        rows = sorted(zip(self.cell.tolist(), self.first.tolist(), self.size.tolist(), strict=True))
+        for key, first, size in ((self.keys[cell], first, size) for cell, first, size in rows):
+            begin = found.pop()[1] if found and found[-1][::2] == (key, first) else first
+            found.append((key, begin, first + size))
+        return found
+
     def moments_of(self, row: int) -> Moments:
         """Return the moments of all variables of a row."""
         if self.size[row] == 1:

@@ -4,6 +4,7 @@ import math
 import time
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import suppress
+from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
@@ -14,6 +15,7 @@ from roughmdr.batch.costs import seconds
 from roughmdr.batch.moments import KnownMoments, Moments, MomentTree
 from roughmdr.batch.plan import Cell, Plan
 from roughmdr.batch.realization import simulate_realization
+from roughmdr.batch.resume.claims import claims_in
 from roughmdr.batch.resume.keys import check_versions, versions
 from roughmdr.batch.task_result import ResultRow, Row, TaskResult, merge_rows, row_of
 from roughmdr.errors import RoughmdrError
@@ -47,6 +49,7 @@ class Task(NamedTuple):
     variables: tuple[str, ...]
     keep_moments: bool  # whether moments are kept, not curves
     versions: str
+    claimed_in: Path | None = None  # folder in which the runs are claimed from other processes before
 
     def result_of(self, rows: Sequence[ResultRow]) -> TaskResult:
         """Make the result of rows, whose cells are indices of the ranges."""
@@ -112,9 +115,13 @@ def prepare_all(plan: Plan, ranges: Iterable[RunRange]) -> None:
             expected.prepare(asperities, one, effective_modulus=modulus, adhesion=adhesion, variables=variables)
 
 
-def compute(task: Task) -> TaskResult:
-    """Compute a task; a run that cannot be computed is marked as failed, and its remark says why."""
+def compute(task: Task) -> TaskResult | None:
+    """Compute a task, unless another process does; a run that cannot be computed is marked as failed, and its remark
+    says why.
+    """
     check_versions(task.versions)
+    if task.claimed_in is not None and not claims_in(task.claimed_in).take(task.ranges):
+        return None
     rows: list[ResultRow] = []
     for number, runs in enumerate(task.ranges):
         results = _moments(runs, task.variables) if task.keep_moments else _curves(runs, task.variables)

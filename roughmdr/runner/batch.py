@@ -20,7 +20,7 @@ from roughmdr.batch.resume.share import Share
 from roughmdr.batch.resume.writer import CheckpointWriter
 from roughmdr.batch.rounds import Rounds
 from roughmdr.batch.task_result import TaskResult
-from roughmdr.batch.tasks import RunRange, first_error, prepare_all, split_into_tasks
+from roughmdr.batch.tasks import RunRange, Task, first_error, prepare_all, split_into_tasks
 from roughmdr.errors import RoughmdrError, StoreError, Unfinished
 from roughmdr.numerics.compiling import compiling
 from roughmdr.result.assemble import assemble
@@ -29,6 +29,7 @@ from roughmdr.runner.cluster import Cluster
 from roughmdr.runner.local import Pool, Serial, Sink, Threads
 from roughmdr.runner.progress import Progress, progress, tell_compiling
 from roughmdr.runner.signals import Interrupted, interruptible
+from roughmdr.runner.together import BETWEEN_LOOKS, Together, WrittenElsewhereError
 from roughmdr.storage.files import NETCDF_ENDINGS, ZARR_ENDING, check_ending, check_writable, destination
 from roughmdr.storage.labelled import Labelled
 from roughmdr.storage.memory import check_memory, describe_available_memory
@@ -74,7 +75,8 @@ def begun(plan: Plan, target: Path | None, share: Share | None = None, *, resume
         target = destination(target)
     rounds, own = Rounds(plan), target if target is None or share is None else share.beside(target)
     with ExitStack() as stack:
-        writer = CheckpointWriter(own, stack, of_share=share is not None)
+        joins = plan.scene.toml if resume and share is None else ""
+        writer = CheckpointWriter(own, stack, of_share=share is not None, joins=joins)
         reusable = ReusableRows(rounds.keys, computed_variables(plan), keep_moments=plan.keeps_statistics)
         old: Labelled | None = None
         finished = False
@@ -144,6 +146,7 @@ class Batch:
         plan = self._plan
         watched = None if plan.scene.accuracy is None else plan.watched
         self._variables = computed_variables(plan)
+        self._together = Together(self._writer, plan, self._rounds.keys)
         room = Room(None if self._writer.target is None else self._writer.target.parent)
         self._collector = Collector(
             self._variables, plan.steps, room, keep_moments=plan.keeps_statistics, watched=watched
@@ -152,11 +155,20 @@ class Batch:
     def run(self, *, quiet: bool) -> Labelled:
         """Run all rounds; return the result, whose history continues that of the one that it may replace."""
         with interruptible(lambda: self._writer.begun, self._saved_message) as stop:
+            if self._writer.store is not None and not self._writer.store.alone:
+                self._writer.begin(self._plan.scene.toml, self._command)
             with progress(self._plan.scene.title, quiet=quiet) as display:
-                ranges = self._rounds.begin()
-                while ranges:
-                    self._round(ranges, display, stop, self._collector.add)
-                    ranges = self._rounds.next(self._collector)
+                try:
+                    ranges = self._rounds.begin()
+                    while ranges:
+                        self._round(ranges, display, stop, self._collector.add)
+                        ranges = self._rounds.next(self._collector)
+                    self._together.await_turn(stop)
+                except WrittenElsewhereError as written:
+                    display.add(total=display.done - display.total)
+                    return written.result
+            if stop.is_set():
+                raise Interrupted(f"interrupted; {self._saved_message()}")
             return self._finish()
 
     def keep(self, ranges: Sequence[RunRange], *, quiet: bool) -> list[str]:
@@ -197,28 +209,62 @@ class Batch:
         return self._writer.saved_message or "nothing was written"
 
     def _round(self, ranges: Sequence[RunRange], display: Progress, stop: threading.Event, take: Sink) -> None:
-        """Reuse what there is, compute what is missing."""
+        """Reuse what there is, compute what is missing, wait for what other processes compute."""
+        missing, told = self._reused(ranges, display, take), False
+        display.add(total=_count(missing))
+        while missing:
+            tasks = split_into_tasks(self._plan, missing, self._variables, self._pool.workers, self._runs_per_task)
+            undone = self._computed(tasks, display, stop, take)
+            if stop.is_set():
+                self._writer.flush()
+                raise Interrupted(f"interrupted; {self._saved_message()}")
+            others = [runs for task in undone for runs in task.ranges]
+            missing = self._reused(others, display, take)
+            display.add(total=_count(missing) - _count(others))
+            if missing and len(undone) == len(tasks):
+                if not told:
+                    display.tell(f"waits for {_count(missing)} runs that another process computes")
+                told = True
+                stop.wait(BETWEEN_LOOKS)
+
+    def _reused(self, ranges: Sequence[RunRange], display: Progress, take: Sink) -> list[RunRange]:
+        """Take those runs that there are by now; return the others."""
         selected: list[tuple[int, int]] = []
-        missing = self._beginning.missing(ranges, selected)
-        for result in self._reusable.read(selected):
-            take(result)
-            display.add(reused=result.realizations)
-        tasks = split_into_tasks(self._plan, missing, self._variables, self._pool.workers, self._runs_per_task)
-        if not tasks:
-            return
-        display.add(total=sum(runs.last - runs.first for runs in missing))
-        if not isinstance(self._pool, Cluster):
-            prepare_all(self._plan, missing)
+        try:
+            self._together.look(self._reusable)
+            missing = self._beginning.missing(ranges, selected)
+            for result in self._reusable.read(selected):
+                take(result)
+                display.add(reused=result.realizations)
+        except StoreError:  # perhaps because what led to a result is removed
+            self._together.check()
+            raise
+        if missing:
+            self._together.check()
+        return missing
+
+    def _computed(self, tasks: Sequence[Task], display: Progress, stop: threading.Event, take: Sink) -> list[Task]:
+        """Compute tasks; return those that are left to other processes."""
+        undone = {(task.ranges[0].key, task.ranges[0].first): task for task in tasks}
+        on_cluster = isinstance(self._pool, Cluster)
         if len(tasks) > 1:
             self._writer.begin(self._plan.scene.toml, self._command)
+        if not on_cluster:
+            prepare_all(self._plan, [runs for task in tasks for runs in task.ranges])
         pool = Serial() if len(tasks) == 1 and isinstance(self._pool, Threads) else self._pool
 
         def sink(result: TaskResult) -> None:
+            for cell, first in zip(result.cell.tolist(), result.first.tolist(), strict=True):
+                undone.pop((result.keys[cell], first), None)
             self._writer.put(result)
             take(result)
             display.add(done=result.realizations)
 
-        pool.compute(tasks, stop, sink)
-        if stop.is_set():
-            self._writer.flush()
-            raise Interrupted(f"interrupted; {self._saved_message()}")
+        # Workers of a cluster outlive the batch, and would keep their claims.
+        pool.compute(self._together.claimed(tasks, by_workers=not on_cluster), stop, sink)
+        return list(undone.values())
+
+
+def _count(ranges: Sequence[RunRange]) -> int:
+    """Return the number of runs."""
+    return sum(runs.last - runs.first for runs in ranges)

@@ -29,7 +29,7 @@ _MAX_LOSSES = 1  # how often all tasks are tried again when a process died, befo
 
 
 class Pool(Protocol):
-    """Computes tasks."""
+    """Computes tasks, but those whose runs other processes have claimed."""
 
     @property
     def workers(self) -> int:
@@ -49,8 +49,8 @@ class Serial:
     def compute(self, tasks: Iterable[Task], stop: threading.Event, sink: Sink) -> None:
         """Compute the tasks in this thread."""
         for task in tasks:
-            if not stop.is_set():
-                sink(compute(task))
+            if not stop.is_set() and (result := compute(task)) is not None:
+                sink(result)
 
 
 class Threads:
@@ -115,6 +115,9 @@ class Processes:
                         group = ProcessGroup(self.workers, context, halt)
                         if alone:
                             sink(failed(waiting.pop(first), "the process that computed it died"))
+                    else:
+                        for number in selected:  # those without a result are left to other processes
+                            waiting.pop(number, None)
         except BaseException:
             stop.set()
             raise

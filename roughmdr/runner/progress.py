@@ -31,6 +31,9 @@ class Progress:
     def update(self) -> None:
         """Show the counts, if it is time for it."""
 
+    def tell(self, line: str) -> None:
+        """Show a line of text."""
+
     @property
     def _under_way(self) -> str:
         """Steps of the runs under way, as "; step 3 of 40"; empty where nothing is known."""
@@ -95,6 +98,9 @@ class _Lines(Progress):
                 self._printed, self._last = time.monotonic(), line
                 _tell(line)
 
+    def tell(self, line: str) -> None:
+        _tell(f"{self.title}: {line}")
+
     @property
     def _counts(self) -> str:
         more = f", {self.reused} used again" if self.reused else ""
@@ -123,5 +129,8 @@ def _bar(title: str) -> Iterator[Progress]:
                 more = f" ({self.reused} used again)" if self.reused else ""
                 more += self._under_way if lasts else ""
                 bar.update(task, total=self.total, completed=self.done, description=f"{title}{more}")
+
+            def tell(self, line: str) -> None:
+                bar.console.print(line, markup=False, highlight=False)
 
         yield Display(title)

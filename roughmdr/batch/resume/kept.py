@@ -12,8 +12,9 @@ from typing import NamedTuple
 
 from roughmdr.batch.plan import Plan, make_plan
 from roughmdr.batch.resume.keys import versions
+from roughmdr.batch.resume.lock import LOCK
+from roughmdr.batch.resume.manifest import MANIFEST, manifest_lines, stored_runs
 from roughmdr.batch.resume.share import Share
-from roughmdr.batch.resume.store import LOCK, MANIFEST, manifest_lines
 from roughmdr.batch.rounds import Rounds
 from roughmdr.errors import RoughmdrError, StoreError
 from roughmdr.scene import Scene, read
@@ -21,6 +22,7 @@ from roughmdr.schema.toml_text import parse_toml
 
 _ENDING = ".parts"
 _HOLDER = re.compile(r"process (\d+) on (.*)")
+_HOLDERS = 4000  # bytes of a lock that are read, which name some hundred runs
 _LOCKS = Path("/proc/locks")
 """Linux lists there who holds which lock: class, kind, access, process and DEVICE:DEVICE:INODE."""
 
@@ -122,11 +124,11 @@ def read_kept(folder: Path) -> Kept:
                 complete, failed, remark = True, set(), ""
             case {"file": str(file), "realizations": int(count)}:
                 runs += count
-                cells = line.get("cells")
-                counted &= isinstance(cells, dict) and all(isinstance(each, int) for each in cells.values())
-                of_file = cells if counted and cells else {}
-                by_key.update(of_file)
-                files.append(StoredFile(file, str(line.get("sha256")), frozenset(of_file)))
+                of_file = stored_runs(line)
+                counted &= of_file is not None
+                for key, first, end in of_file or ():
+                    by_key[key] += end - first
+                files.append(StoredFile(file, str(line.get("sha256")), frozenset(key for key, *_ in of_file or ())))
             case {"failed": list(some), "remark": str(why)}:
                 pairs = (each for each in some if isinstance(each, list) and len(each) == 2)
                 failed |= {(key, run) for key, run in pairs if isinstance(key, str) and isinstance(run, int)}
@@ -170,16 +172,17 @@ def _holder(folder: Path) -> tuple[Holder | None, bool]:
     """Return the run at work in a folder, if there is one, and whether that can be told."""
     try:
         with (folder / LOCK).open("rb") as file:
-            status, text = os.fstat(file.fileno()), file.read(200).decode(errors="replace").strip()
+            status, text = os.fstat(file.fileno()), file.read(_HOLDERS).decode(errors="replace")
     except OSError:
         return None, True
-    match = _HOLDER.fullmatch(text)
-    if match is None:
-        return None, True
-    holder = Holder(int(match[1]), match[2], _utc(status.st_mtime))
-    if holder.host != platform.node():
-        return holder, False
-    return (holder if _is_locked(status.st_ino, holder.process) else None), True
+    named = [match for line in text.splitlines() if (match := _HOLDER.fullmatch(line.strip()))]
+    holders = [Holder(int(match[1]), match[2], _utc(status.st_mtime)) for match in named]
+    here = [holder for holder in holders if holder.host == platform.node()]
+    for holder in here:
+        if _is_locked(status.st_ino, holder.process):
+            return holder, True
+    elsewhere = [holder for holder in holders if holder not in here]
+    return (elsewhere[0], False) if elsewhere else (None, True)
 
 
 def _is_locked(inode: int, process: int) -> bool:

@@ -2,15 +2,14 @@
 
 A task result is written to a temporary name, synchronised to the disk, and renamed; then a line of the manifest gives
 its hash. A file without a line does not count, and neither does a line that was not finished. A lock that the system
-releases when its process dies keeps others out.
+releases when its process dies keeps others out, but for processes that compute the same batch: they share the lock.
 """
 
-import errno
 import hashlib
 import json
 import os
-import platform
 import re
+import secrets
 import shutil
 import stat
 import zipfile
@@ -21,16 +20,16 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
+from roughmdr.batch.resume.claims import CLAIMS, Claims, claims_in, give_up
+from roughmdr.batch.resume.lock import LOCK, BatchName, FolderLock, acquire_lock
+from roughmdr.batch.resume.manifest import FILE, MANIFEST, ManifestTail
 from roughmdr.batch.task_result import TaskResult
 from roughmdr.errors import StoreError
 from roughmdr.storage.files import convert_os_errors, sync_folder
 
-# Errors of disks without locks, such as some that a cluster shares: there nobody is kept out.
-_NO_LOCKS = (errno.ENOSYS, errno.EOPNOTSUPP, errno.ENOLCK)
-LOCK, MANIFEST, _FILE = "lock", "manifest.jsonl", "{:06d}.npz"
-_FILE_NAME = re.compile(r"[0-9]{6,}\.npz")
 _OWN_FILES = re.compile(rf"{re.escape(MANIFEST)}|[0-9]{{6,}}\.npz(\.tmp)?|\.roughmdr\..*")
-"""Names of all that is written to the folder, but the lock: nothing else is removed."""
+"""Names of all that is written to the folder, but the lock and claims: nothing else is removed."""
+_FILES_OF_ONE = 10**6  # numbers of files that each process has to itself where several write to a folder
 
 
 def store_folder(target: Path) -> Path:
@@ -41,15 +40,6 @@ def store_folder(target: Path) -> Path:
 def _is_regular(path: Path) -> bool:
     """Return whether a path is a regular file: no link to another place, and nothing that may never end."""
     return stat.S_ISREG(path.lstat().st_mode)
-
-
-def manifest_lines(content: bytes) -> Iterator[dict[str, Any]]:
-    """Yield the whole lines of a manifest: that of the batch, and those of its task results and failed runs."""
-    for text in content[: content.rfind(b"\n") + 1].splitlines():
-        with suppress(ValueError, RecursionError):
-            line = json.loads(text)
-            if isinstance(line, dict) and _FILE_NAME.fullmatch(str(line.get("file", _FILE.format(0)))):
-                yield line
 
 
 def read_task_result(folder: Path, file: str, sha256: str) -> TaskResult | None:
@@ -66,25 +56,46 @@ def read_task_result(folder: Path, file: str, sha256: str) -> TaskResult | None:
 class CheckpointStore:
     """The folder, while this process holds its lock."""
 
-    def __init__(self, folder: Path, *, of_share: bool = False) -> None:
-        self.folder, self._of_share = folder, of_share
+    def __init__(self, folder: Path, lock: FolderLock | None = None, *, of_share: bool = False) -> None:
+        self.folder, self._of_share, self._lock = folder, of_share, lock
         self.scene = ""
         """TOML text of the scene of the batch that began the folder; of a share, of the last that went on there."""
         self.versions = ""
         self.replaces = ""
         """Stamp of the file that this batch may replace (see ``CheckpointWriter``); empty for none."""
         self._has_failed = False
-        self._lines = self._read_manifest()
+        self._tail, self._own = ManifestTail(folder), set[str]()
+        if self.alone:
+            self._cut_manifest()
+        self._lines = self._new_lines()
         self._next = 1 + max((int(line["file"][:-4]) for line in self._lines), default=0)
+        if not self.alone:
+            self._next = (1 + secrets.randbelow(_FILES_OF_ONE)) * _FILES_OF_ONE
+
+    @property
+    def alone(self) -> bool:
+        """Whether no other process was computing the batch when this one began."""
+        return self._lock is None or self._lock.alone
+
+    @property
+    def claims(self) -> Claims:
+        """The claims of this process on runs of the batch."""
+        return claims_in(self.folder)
 
     @property
     def empty(self) -> bool:
         """Whether no task result is stored."""
-        return self._next == 1
+        return not self._lines and not self._own
+
+    @property
+    def ended(self) -> bool:
+        """Whether another process has written the result, and removed what led to it."""
+        return not self._tail.is_there
 
     @property
     def removable(self) -> bool:
         """Whether the folder tells nothing that is needed: of a share also which runs failed."""
+        self._lines += self._new_lines()  # of another process that ended before its time
         return self.empty and not (self._of_share and self._has_failed)
 
     def begin(self, scene: str, versions: str, replaces: str, command: str) -> None:
@@ -94,14 +105,27 @@ class CheckpointStore:
             began = datetime.now(UTC).isoformat(timespec="seconds")
             decisive = {"scene": scene, "versions": versions, "replaces": replaces}
             self._append({**decisive, "command": command, "began": began})
+        if self.alone:
+            self.claims.look()  # what is stored already, but cannot be used, is computed again
+        own = (self.scene, self.versions) == (scene, versions)  # else it has begun as another, with fewer runs perhaps
+        if self._lock is not None and self._lock.alone and own and not self._of_share:
+            self._lock.share()
 
     def readers(self) -> Iterator[Callable[[], TaskResult | None]]:
         """Yield a function for each task result that reads it; it returns None for one that is damaged."""
-        return (partial(read_task_result, self.folder, line["file"], line["sha256"]) for line in self._lines)
+        return self._readers(self._lines)
+
+    def news(self) -> Iterator[Callable[[], TaskResult | None]]:
+        """Yield such functions for what other processes have stored since the last call."""
+        self._lines += (new := self._new_lines())
+        return self._readers(new)
+
+    def _readers(self, lines: list[dict[str, Any]]) -> Iterator[Callable[[], TaskResult | None]]:
+        return (partial(read_task_result, self.folder, line["file"], line["sha256"]) for line in lines)
 
     def write(self, result: TaskResult) -> None:
         """Store a task result for good; StoreError where that fails, and then nothing is changed."""
-        content, file = result.to_bytes(), _FILE.format(self._next)
+        content, file = result.to_bytes(), FILE.format(self._next)
         temporary = self.folder / f"{file}.tmp"
         with convert_os_errors(self.folder):
             try:
@@ -115,8 +139,8 @@ class CheckpointStore:
                 raise
             sync_folder(self.folder)
         digest = hashlib.sha256(content).hexdigest()
-        cells = {key: int(result.size[result.cell == i].sum()) for i, key in enumerate(result.keys)}
-        self._append({"file": file, "sha256": digest, "realizations": result.realizations, "cells": cells})
+        self._own.add(file)
+        self._append({"file": file, "sha256": digest, "realizations": result.realizations, "runs": result.runs})
         self._next += 1
 
     def note_failed(self, runs: list[tuple[str, int]], remark: str) -> None:
@@ -136,22 +160,25 @@ class CheckpointStore:
                 if _OWN_FILES.fullmatch(path.name):
                     _remove(path)
         self.scene, self.replaces, self._has_failed, self._lines, self._next = "", "", False, [], 1
+        self._tail, self._own = ManifestTail(self.folder), set()
 
-    def _read_manifest(self) -> list[dict[str, Any]]:
-        """Return the lines of the manifest about task results; one that was not finished is cut off."""
-        lines: list[dict[str, Any]] = []
+    def _cut_manifest(self) -> None:
+        """Cut off a line of the manifest that was not finished."""
         manifest = self.folder / MANIFEST
         if os.path.lexists(manifest) and not _is_regular(manifest):
             raise StoreError(f"{manifest}: is no ordinary file; remove it")
         content = manifest.read_bytes() if manifest.exists() else b""
-        whole = content[: content.rfind(b"\n") + 1]
-        if whole != content:
-            os.truncate(manifest, len(whole))
-        for line in manifest_lines(whole):
+        if (whole := content.rfind(b"\n") + 1) < len(content):
+            os.truncate(manifest, whole)
+
+    def _new_lines(self) -> list[dict[str, Any]]:
+        """Return the lines of the manifest about task results that others have stored since the last call."""
+        lines: list[dict[str, Any]] = []
+        for line in self._tail.new_lines():
             match line:
                 case {"scene": str(scene), "versions": str(versions), "replaces": str(replaces)}:
                     self.scene, self.versions, self.replaces = scene, versions, replaces
-                case {"file": str(), "sha256": str()}:
+                case {"file": str(file), "sha256": str()} if file not in self._own:
                     lines.append(line)
                 case {"failed": list()}:
                     self._has_failed = True
@@ -159,7 +186,7 @@ class CheckpointStore:
 
     def _append(self, line: dict[str, Any]) -> None:
         manifest = self.folder / MANIFEST
-        with convert_os_errors(self.folder), manifest.open("ab") as file:
+        with convert_os_errors(self.folder), self.claims.appending(), manifest.open("ab") as file:
             before = file.tell()
             try:
                 file.write(json.dumps(line).encode() + b"\n")
@@ -176,60 +203,33 @@ def _remove(path: Path) -> None:
 
 
 @contextmanager
-def locked_store(target: Path, *, of_share: bool = False) -> Iterator[CheckpointStore]:
-    """Open the store of a result or a share, made if need be, for this process alone.
+def locked_store(target: Path, *, of_share: bool = False, joins: BatchName | None = None) -> Iterator[CheckpointStore]:
+    """Open the store of a result or a share, made if need be, for this process and others that compute ``joins``.
 
-    The folder is removed at the end if it tells nothing. StoreError where another process holds its lock.
+    The last of them removes the folder if it tells nothing. StoreError where another process holds its lock.
     """
     folder = store_folder(target)
     with convert_os_errors(folder):
-        lock = _acquire_lock(folder, target)
+        lock = acquire_lock(folder, target, joins)
     try:
         with convert_os_errors(folder):
-            for path in folder.glob("*.tmp"):
+            for path in folder.glob("*.tmp") if lock.alone else ():
                 if _OWN_FILES.fullmatch(path.name):
                     _remove(path)
-            store = CheckpointStore(folder, of_share=of_share)
+            store = CheckpointStore(folder, lock, of_share=of_share)
         try:
             yield store
         finally:
-            if store.removable:
+            give_up(folder)
+            if lock.is_last() and store.removable:
                 with suppress(OSError):
                     (folder / MANIFEST).unlink()
     finally:
-        with suppress(OSError):
-            if {path.name for path in folder.glob("*")} == {LOCK}:
-                (folder / LOCK).unlink()
-                folder.rmdir()
-        with suppress(OSError):
-            os.ftruncate(lock, 0)  # no run is at work any more, for those too who do not see the lock
-        os.close(lock)
-
-
-def _acquire_lock(folder: Path, target: Path) -> int:
-    """Return the descriptor of a lock on the folder, which is locked until the descriptor is closed."""
-    import fcntl
-
-    while True:
-        folder.mkdir(exist_ok=True)
-        try:
-            lock = os.open(folder / LOCK, os.O_RDWR | os.O_CREAT | os.O_NOFOLLOW, 0o666)
-        except FileNotFoundError:  # its last holder has just removed the folder
-            continue
-        try:
-            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except BlockingIOError:
-            holder = os.read(lock, 200).decode(errors="replace").strip()
-            os.close(lock)
-            raise StoreError(f"{target}: another run is writing it{holder and f' ({holder})'}") from None
-        except OSError as error:
-            if error.errno not in _NO_LOCKS:
-                os.close(lock)
-                raise
-        with suppress(FileNotFoundError):
-            if os.path.samestat(os.fstat(lock), os.stat(folder / LOCK)):
-                with suppress(OSError):  # the disk may be full; the holder is named only to be helpful
-                    os.truncate(lock, 0)
-                    os.write(lock, f"process {os.getpid()} on {platform.node()}\n".encode())
-                return lock
-        os.close(lock)
+        if lock.is_last():
+            with suppress(OSError):
+                if {path.name for path in folder.glob("*")} <= {LOCK, CLAIMS}:
+                    (folder / CLAIMS).unlink(missing_ok=True)
+                    (folder / LOCK).unlink()
+                    folder.rmdir()
+            lock.forget()
+        lock.release()

@@ -7,6 +7,7 @@ from contextlib import ExitStack
 from pathlib import Path
 
 from roughmdr.batch.resume.keys import versions
+from roughmdr.batch.resume.lock import BatchName
 from roughmdr.batch.resume.store import CheckpointStore, locked_store, store_folder
 from roughmdr.batch.task_result import TaskResult
 from roughmdr.errors import StoreError
@@ -23,10 +24,11 @@ _MAX_PENDING = 16  # task results that may wait to be written before the batch w
 class CheckpointWriter:
     """Write checkpoints for one output and hold the lock of their folder until the ``stack`` is closed.
 
-    Nothing is written without a ``target``; there is no folder if its name would be too long.
+    Nothing is written without a ``target``; there is no folder if its name would be too long. Where other processes
+    compute the same batch as the scene ``joins``, as TOML, this one shares the folder with them.
     """
 
-    def __init__(self, target: Path | None, stack: ExitStack, *, of_share: bool = False) -> None:
+    def __init__(self, target: Path | None, stack: ExitStack, *, of_share: bool = False, joins: str = "") -> None:
         self.target, self._stack = target, stack
         self.store: CheckpointStore | None = None
         self.joined: list[CheckpointStore] = []
@@ -35,7 +37,8 @@ class CheckpointWriter:
         self._thread: ThreadPoolExecutor | None = None
         self._pending: deque[Future[None]] = deque()
         if target is not None and len(os.fsencode(store_folder(target).name)) <= _MAX_NAME:
-            self.store = stack.enter_context(locked_store(target, of_share=of_share))
+            batch = BatchName(joins, versions()) if joins else None
+            self.store = stack.enter_context(locked_store(target, of_share=of_share, joins=batch))
 
     def clear(self) -> None:
         """Remove the checkpoints of an earlier run; the file that is at the output now, if one is, may be replaced."""

@@ -1,0 +1,142 @@
+"""Claims of the processes that fill one folder of parts together: each run is computed by the one that claims it.
+
+A claim is a lock on bytes of a file, one byte for each run: the system releases it when its process ends, however that
+ends. On a disk without locks every claim is granted, and runs are only computed twice.
+"""
+
+import errno
+import os
+import threading
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager, suppress
+from pathlib import Path
+from typing import Protocol
+from zlib import crc32
+
+from roughmdr.batch.resume.manifest import ManifestTail, StoredRuns, stored_runs
+
+NO_LOCKS = (errno.ENOSYS, errno.EOPNOTSUPP, errno.ENOLCK)
+"""Error numbers of disks without locks, such as some that a cluster shares."""
+CLAIMS = "claims"
+_RUNS = 2**32  # number of bytes that a cell has in the file, more than realisations that a scene may ask for
+_CELLS = 2**29  # number of places for cells, by a hash of their keys: two cells in one place wait for each other
+_APPENDING, _FINISHING = _CELLS * _RUNS, _CELLS * _RUNS + 1  # bytes of who appends to the manifest, and of who ends
+
+
+class Runs(Protocol):
+    """Realisations first ... last - 1 of a cell."""
+
+    @property
+    def key(self) -> str:
+        """Key of the cell."""
+        ...
+
+    @property
+    def first(self) -> int:
+        """First realisation."""
+        ...
+
+    @property
+    def last(self) -> int:
+        """Number after the last realisation."""
+        ...
+
+
+class Claims:
+    """Claims of this process in a folder, until they are given up."""
+
+    def __init__(self, folder: Path) -> None:
+        self._file = os.open(folder / CLAIMS, os.O_RDWR | os.O_CREAT | os.O_NOFOLLOW, 0o666)
+        self._tail, self._stored = ManifestTail(folder), dict[str, list[StoredRuns]]()
+        self._guard = threading.Lock()
+
+    def look(self) -> None:
+        """Read which runs have been stored since the last look."""
+        for line in self._tail.new_lines():
+            for runs in stored_runs(line) or ():
+                self._stored.setdefault(runs.key, []).append(runs)
+
+    def are_stored(self, ranges: Iterable[Runs]) -> bool:
+        """Return whether any of the runs was stored at the last look."""
+        return any(
+            max(runs.first, stored.first) < min(runs.last, stored.last)
+            for runs in ranges
+            for stored in self._stored.get(runs.key, ())
+        )
+
+    def take(self, ranges: Iterable[Runs]) -> bool:
+        """Claim runs, all or none; return whether they are this process's to compute, and not done already."""
+        with self._guard:
+            taken = list[Runs]()
+            for runs in ranges:
+                if not self._lock(_place(runs), runs.last - runs.first):
+                    break
+                taken.append(runs)
+            else:
+                self.look()  # after the locks: who held them may have stored the runs, and ended
+                if self._tail.is_there and not self.are_stored(taken):
+                    return True
+            for runs in taken:
+                self._unlock(_place(runs), runs.last - runs.first)
+            return False
+
+    def finish(self) -> bool:
+        """Claim to write the result; return whether no other process is about to."""
+        return self._lock(_FINISHING)
+
+    @contextmanager
+    def appending(self) -> Iterator[None]:
+        """Wait until no other process appends to the manifest, and keep others from it."""
+        self._lock(_APPENDING, wait=True)
+        try:
+            yield
+        finally:
+            self._unlock(_APPENDING)
+
+    def close(self) -> None:
+        """Give up all claims."""
+        os.close(self._file)
+
+    def _lock(self, place: int, count: int = 1, *, wait: bool = False) -> bool:
+        import fcntl
+
+        try:
+            fcntl.lockf(self._file, fcntl.LOCK_EX | (0 if wait else fcntl.LOCK_NB), count, place)
+        except (BlockingIOError, PermissionError):
+            return False
+        except OSError as error:
+            if error.errno not in NO_LOCKS:
+                raise
+        return True
+
+    def _unlock(self, place: int, count: int = 1) -> None:
+        import fcntl
+
+        with suppress(OSError):
+            fcntl.lockf(self._file, fcntl.LOCK_UN, count, place)
+
+
+def _place(runs: Runs) -> int:
+    """Return the byte of the first of the runs."""
+    return crc32(runs.key.encode()) % _CELLS * _RUNS + runs.first
+
+
+_opened: dict[Path, Claims] = {}
+_guard = threading.Lock()
+
+
+def claims_in(folder: Path) -> Claims:
+    """Return the claims of this process in a folder: to open their file twice would lose them."""
+    folder = folder.resolve()
+    with _guard:
+        if folder not in _opened:
+            _opened[folder] = Claims(folder)
+        return _opened[folder]
+
+
+def give_up(folder: Path) -> None:
+    """Give up all claims of this process in a folder."""
+    with _guard:
+        claims = _opened.pop(folder.resolve(), None)
+    if claims is not None:
+        claims.close()

@@ -1,0 +1,65 @@
+"""The manifest of OUT.nc.parts: a line of JSON for the batch, and one for each stored task result and failed run."""
+
+import json
+import re
+from collections.abc import Iterator
+from contextlib import suppress
+from pathlib import Path
+from typing import Any, NamedTuple
+
+MANIFEST, FILE = "manifest.jsonl", "{:06d}.npz"
+_FILE_NAME = re.compile(r"[0-9]{6,}\.npz")
+
+
+class StoredRuns(NamedTuple):
+    """Realisations first ... last - 1 of a cell that a task result holds."""
+
+    key: str
+    first: int
+    last: int
+
+
+def manifest_lines(content: bytes) -> Iterator[dict[str, Any]]:
+    """Yield the whole lines of a manifest: that of the batch, and those of its task results and failed runs."""
+    for text in content[: content.rfind(b"\n") + 1].splitlines():
+        with suppress(ValueError, RecursionError):
+            line = json.loads(text)
+            if isinstance(line, dict) and _FILE_NAME.fullmatch(str(line.get("file", FILE.format(0)))):
+                yield line
+
+
+def stored_runs(line: dict[str, Any]) -> list[StoredRuns] | None:
+    """Return the runs of a line about a task result; None where an earlier version has not noted them."""
+    match line.get("runs"):
+        case [*runs] if runs and all(_is_range(each) for each in runs):
+            return [StoredRuns(*each) for each in runs]
+    return None
+
+
+def _is_range(given: object) -> bool:
+    match given:
+        case [str(), int(first), int(last)]:
+            return 0 <= first < last
+    return False
+
+
+class ManifestTail:
+    """Lines of a manifest in the order in which processes append them, each read once."""
+
+    def __init__(self, folder: Path) -> None:
+        self._path, self._offset = folder / MANIFEST, 0
+
+    @property
+    def is_there(self) -> bool:
+        """Whether there is a manifest: who writes the result removes it."""
+        return self._path.exists()
+
+    def new_lines(self) -> list[dict[str, Any]]:
+        """Return the lines that were finished since the last call; none where there is no manifest."""
+        content = b""
+        with suppress(FileNotFoundError), self._path.open("rb") as file:
+            file.seek(self._offset)
+            content = file.read()
+        whole = content[: content.rfind(b"\n") + 1]
+        self._offset += len(whole)
+        return list(manifest_lines(whole))

@@ -1,0 +1,72 @@
+"""Several processes that fill one batch: each takes runs that no other has, and one of them writes the result."""
+
+import errno
+import os
+import threading
+from collections.abc import Iterator, Sequence
+
+from roughmdr.batch.plan import Plan
+from roughmdr.batch.resume.find import find_previous, is_finished
+from roughmdr.batch.resume.reusable import ReusableRows
+from roughmdr.batch.resume.writer import CheckpointWriter
+from roughmdr.batch.tasks import Task
+from roughmdr.errors import StoreError
+from roughmdr.storage.labelled import Labelled
+
+BETWEEN_LOOKS = 0.5  # time [s] between two looks at what other processes have stored
+
+
+class WrittenElsewhereError(Exception):
+    """Another process has written the result of the batch."""
+
+    def __init__(self, result: Labelled) -> None:
+        super().__init__()
+        self.result = result
+
+
+class Together:
+    """The part of one process in a batch; without checkpoints it does all of it."""
+
+    def __init__(self, writer: CheckpointWriter, plan: Plan, keys: Sequence[set[str]]) -> None:
+        self._writer, self._plan, self._keys = writer, plan, keys
+
+    def look(self, reusable: ReusableRows) -> None:
+        """Add what other processes have stored to ``reusable``."""
+        if self._writer.begun and (store := self._writer.store):
+            store.claims.look()  # before the results themselves: all that it knows to be stored can be read then
+            for reader in store.news():
+                reusable.add(reader)
+
+    def check(self) -> None:
+        """Raise WrittenElsewhereError where another process has written the result, and removed what led to it.
+
+        StoreError where it is removed, and no result is there.
+        """
+        target, store = self._writer.target, self._writer.store
+        if target is not None and self._writer.begun and store is not None and store.ended:
+            self._writer.flush()
+            result = find_previous(target)
+            if result is None or not is_finished(result, self._plan, self._keys):
+                raise StoreError(f"{store.folder}: cannot be written: {os.strerror(errno.ENOENT)}")
+            raise WrittenElsewhereError(result)
+
+    def claimed(self, tasks: Sequence[Task], *, by_workers: bool) -> Iterator[Task]:
+        """Yield tasks whose runs ``by_workers`` are claimed as they begin, or those of which they could be claimed now.
+
+        A task that stored results overlap is computed in any case: they are merged with runs that are not in it.
+        """
+        store = self._writer.store if self._writer.begun else None
+        for task in tasks:
+            if store is None or store.claims.are_stored(task.ranges):
+                yield task
+            elif by_workers:
+                yield task._replace(claimed_in=store.folder.absolute())
+            elif store.claims.take(task.ranges):
+                yield task
+
+    def await_turn(self, stop: threading.Event) -> None:
+        """Wait until no other process is about to write the result, or until ``stop`` is set; check whether it has."""
+        if self._writer.begun and (store := self._writer.store):
+            while not store.claims.finish() and not stop.wait(BETWEEN_LOOKS):
+                pass
+            self.check()
