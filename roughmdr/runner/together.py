@@ -53,11 +53,11 @@ class Together:
     def claimed(self, tasks: Sequence[Task], *, by_workers: bool) -> Iterator[Task]:
         """Yield tasks whose runs ``by_workers`` are claimed as they begin, or those of which they could be claimed now.
 
-        A task that stored results overlap is computed in any case: they are merged with runs that are not in it.
+        A task of which runs have failed elsewhere, or are stored merged with others, is computed in any case.
         """
         store = self._writer.store if self._writer.begun else None
         for task in tasks:
-            if store is None or store.claims.are_stored(task.ranges):
+            if store is None or store.claims.are_done(task.ranges):
                 yield task
             elif by_workers:
                 yield task._replace(claimed_in=store.folder.absolute())

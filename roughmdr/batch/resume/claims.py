@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Protocol
 from zlib import crc32
 
-from roughmdr.batch.resume.manifest import ManifestTail, StoredRuns, stored_runs
+from roughmdr.batch.resume.manifest import ManifestTail, RunsOfLine, runs_of
 
 NO_LOCKS = (errno.ENOSYS, errno.EOPNOTSUPP, errno.ENOLCK)
 """Error numbers of disks without locks, such as some that a cluster shares."""
@@ -47,21 +47,21 @@ class Claims:
 
     def __init__(self, folder: Path) -> None:
         self._file = os.open(folder / CLAIMS, os.O_RDWR | os.O_CREAT | os.O_NOFOLLOW, 0o666)
-        self._tail, self._stored = ManifestTail(folder), dict[str, list[StoredRuns]]()
+        self._tail, self._done = ManifestTail(folder), dict[str, list[RunsOfLine]]()
         self._guard = threading.Lock()
 
     def look(self) -> None:
-        """Read which runs have been stored since the last look."""
+        """Read which runs have been stored, or have failed, since the last look."""
         for line in self._tail.new_lines():
-            for runs in stored_runs(line) or ():
-                self._stored.setdefault(runs.key, []).append(runs)
+            for runs in runs_of(line) or ():
+                self._done.setdefault(runs.key, []).append(runs)
 
-    def are_stored(self, ranges: Iterable[Runs]) -> bool:
-        """Return whether any of the runs was stored at the last look."""
+    def are_done(self, ranges: Iterable[Runs]) -> bool:
+        """Return whether any of the runs was stored, or had failed, at the last look."""
         return any(
-            max(runs.first, stored.first) < min(runs.last, stored.last)
+            max(runs.first, done.first) < min(runs.last, done.last)
             for runs in ranges
-            for stored in self._stored.get(runs.key, ())
+            for done in self._done.get(runs.key, ())
         )
 
     def take(self, ranges: Iterable[Runs]) -> bool:
@@ -73,8 +73,8 @@ class Claims:
                     break
                 taken.append(runs)
             else:
-                self.look()  # after the locks: who held them may have stored the runs, and ended
-                if self._tail.is_there and not self.are_stored(taken):
+                self.look()  # after the locks: who held them may have done the runs, and ended
+                if self._tail.is_there and not self.are_done(taken):
                     return True
             for runs in taken:
                 self._unlock(_place(runs), runs.last - runs.first)

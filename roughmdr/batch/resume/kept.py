@@ -13,7 +13,7 @@ from typing import NamedTuple
 from roughmdr.batch.plan import Plan, make_plan
 from roughmdr.batch.resume.keys import versions
 from roughmdr.batch.resume.lock import LOCK
-from roughmdr.batch.resume.manifest import MANIFEST, manifest_lines, stored_runs
+from roughmdr.batch.resume.manifest import MANIFEST, manifest_lines, runs_of
 from roughmdr.batch.resume.share import Share
 from roughmdr.batch.rounds import Rounds
 from roughmdr.errors import RoughmdrError, StoreError
@@ -124,14 +124,13 @@ def read_kept(folder: Path) -> Kept:
                 complete, failed, remark = True, set(), ""
             case {"file": str(file), "realizations": int(count)}:
                 runs += count
-                of_file = stored_runs(line)
+                of_file = runs_of(line)
                 counted &= of_file is not None
                 for key, first, end in of_file or ():
                     by_key[key] += end - first
                 files.append(StoredFile(file, str(line.get("sha256")), frozenset(key for key, *_ in of_file or ())))
-            case {"failed": list(some), "remark": str(why)}:
-                pairs = (each for each in some if isinstance(each, list) and len(each) == 2)
-                failed |= {(key, run) for key, run in pairs if isinstance(key, str) and isinstance(run, int)}
+            case {"failed": list(), "remark": str(why)}:
+                failed |= {(key, run) for key, run, _ in runs_of(line) or ()}
                 remark = remark or why
     scene, made_with, command, began = (batch.get(name, "") for name in ("scene", "versions", "command", "began"))
     kept_by_key = by_key if counted else None

@@ -11,8 +11,8 @@ MANIFEST, FILE = "manifest.jsonl", "{:06d}.npz"
 _FILE_NAME = re.compile(r"[0-9]{6,}\.npz")
 
 
-class StoredRuns(NamedTuple):
-    """Realisations first ... last - 1 of a cell that a task result holds."""
+class RunsOfLine(NamedTuple):
+    """Realisations first ... last - 1 of a cell that a line is about."""
 
     key: str
     first: int
@@ -28,18 +28,22 @@ def manifest_lines(content: bytes) -> Iterator[dict[str, Any]]:
                 yield line
 
 
-def stored_runs(line: dict[str, Any]) -> list[StoredRuns] | None:
-    """Return the runs of a line about a task result; None where an earlier version has not noted them."""
-    match line.get("runs"):
-        case [*runs] if runs and all(_is_range(each) for each in runs):
-            return [StoredRuns(*each) for each in runs]
-    return None
+def runs_of(line: dict[str, Any]) -> list[RunsOfLine] | None:
+    """Return the runs that are stored, or have failed; None where an earlier version has not noted them."""
+    match line:
+        case {"failed": [*pairs]}:
+            given = [[*pair, pair[-1] + 1] for pair in pairs if _is_range(pair)]
+        case {"runs": [*given]} if given:
+            pass
+        case _:
+            return None
+    return [RunsOfLine(*each) for each in given] if all(map(_is_range, given)) else None
 
 
 def _is_range(given: object) -> bool:
     match given:
-        case [str(), int(first), int(last)]:
-            return 0 <= first < last
+        case [str(), int(first), *more]:
+            return first >= 0 and all(isinstance(last, int) and last > first for last in more) and len(more) < 2
     return False
 
 
