@@ -142,9 +142,9 @@ def until(condition: Callable[[], bool], patience: float = PATIENCE, pause: floa
         time.sleep(pause)
 
 
-def lines(folder: Path) -> list[dict[str, Any]]:
+def lines(folder: Path, out: str = "out.nc") -> list[dict[str, Any]]:
     """The whole lines of the manifest that speak of task results."""
-    manifest = folder / "out.nc.parts" / "manifest.jsonl"
+    manifest = folder / f"{out}.parts" / "manifest.jsonl"
     try:
         content = manifest.read_bytes()
     except OSError:
@@ -153,9 +153,9 @@ def lines(folder: Path) -> list[dict[str, Any]]:
     return [line for line in found if "file" in line]
 
 
-def kept(folder: Path) -> int:
+def kept(folder: Path, out: str = "out.nc") -> int:
     """How many runs are kept."""
-    return sum(line["realizations"] for line in lines(folder))
+    return sum(line["realizations"] for line in lines(folder, out))
 
 
 def write_scene(folder: Path, table: dict[str, Any]) -> None:

@@ -27,9 +27,9 @@ from roughmdr.storage.files import convert_os_errors, sync_folder
 
 # Errors of disks without locks, such as some that a cluster shares: there nobody is kept out.
 _NO_LOCKS = (errno.ENOSYS, errno.EOPNOTSUPP, errno.ENOLCK)
-LOCK, MANIFEST, _FILE = "lock", "manifest.jsonl", "{:06d}.npz"
+LOCK, MANIFEST, SO_FAR, _FILE = "lock", "manifest.jsonl", "so_far.zarr", "{:06d}.npz"
 _FILE_NAME = re.compile(r"[0-9]{6,}\.npz")
-_OWN_FILES = re.compile(rf"{re.escape(MANIFEST)}|[0-9]{{6,}}\.npz(\.tmp)?|\.roughmdr\..*")
+_OWN_FILES = re.compile(rf"{re.escape(MANIFEST)}|{re.escape(SO_FAR)}|[0-9]{{6,}}\.npz(\.tmp)?|\.roughmdr\..*")
 """Names of all that is written to the folder, but the lock: nothing else is removed."""
 
 
@@ -186,7 +186,7 @@ def locked_store(target: Path, *, of_share: bool = False) -> Iterator[Checkpoint
         lock = _acquire_lock(folder, target)
     try:
         with convert_os_errors(folder):
-            for path in folder.glob("*.tmp"):
+            for path in (*folder.glob("*.tmp"), *folder.glob(SO_FAR)):  # not whole, nor known to be on the disk
                 if _OWN_FILES.fullmatch(path.name):
                     _remove(path)
             store = CheckpointStore(folder, of_share=of_share)
@@ -194,6 +194,7 @@ def locked_store(target: Path, *, of_share: bool = False) -> Iterator[Checkpoint
             yield store
         finally:
             if store.removable:
+                shutil.rmtree(folder / SO_FAR, ignore_errors=True)
                 with suppress(OSError):
                     (folder / MANIFEST).unlink()
     finally:
