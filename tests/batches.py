@@ -94,7 +94,7 @@ class Batch:
         self.pid = self.process.pid
 
     def said_so_far(self) -> str:
-        """What it has said by now on the standard error stream."""
+        """Text on the standard error stream by now."""
         return Path(self._said.name).read_text()
 
     def end(self) -> tuple[int, str]:
@@ -147,9 +147,9 @@ def until(condition: Callable[[], bool], patience: float = PATIENCE, pause: floa
         time.sleep(pause)
 
 
-def lines(folder: Path) -> list[dict[str, Any]]:
+def lines(folder: Path, out: str = "out.nc") -> list[dict[str, Any]]:
     """The whole lines of the manifest that speak of task results."""
-    manifest = folder / "out.nc.parts" / "manifest.jsonl"
+    manifest = folder / f"{out}.parts" / "manifest.jsonl"
     try:
         content = manifest.read_bytes()
     except OSError:
@@ -158,9 +158,9 @@ def lines(folder: Path) -> list[dict[str, Any]]:
     return [line for line in found if "file" in line]
 
 
-def kept(folder: Path) -> int:
+def kept(folder: Path, out: str = "out.nc") -> int:
     """How many runs are kept."""
-    return sum(line["realizations"] for line in lines(folder))
+    return sum(line["realizations"] for line in lines(folder, out))
 
 
 def write_scene(folder: Path, table: dict[str, Any]) -> None:

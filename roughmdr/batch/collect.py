@@ -8,7 +8,7 @@ import numpy as np
 from roughmdr.batch.moments import MEAN, ROWS, KnownMoments, Moments, MomentTree
 from roughmdr.batch.task_result import Columns, Row, TaskResult, merge, merge_rows, not_run
 from roughmdr.loading.pull_off import PullOff
-from roughmdr.numerics.arguments import Floats
+from roughmdr.numerics.arguments import Floats, Ints
 from roughmdr.storage.room import Room
 from roughmdr.variables import FAILED, NOT_RUN
 
@@ -35,18 +35,55 @@ class Collector:
         self._variables, self._shape, self._keep_moments = tuple(variables), (len(variables), steps), keep_moments
         self._watched = None if watched is None else self._variables.index(watched)
         self._results: list[TaskResult] = []
-        self._room = room
+        self._room, self.none_done = room, True  # whether no realisation at all could be computed
+        self._cells_of: dict[str, list[int]] = {}
+        self.places: CollectedResults | None = None
+        """Places of all curves, which results fill as they are added; None until it is known how many there will be."""
         self._trees: dict[str, MomentTree[Moments]] = {}
         self._pull_offs: dict[str, MomentTree[KnownMoments]] = {}
         self._diagnostics: dict[str, Row] = {}
         self._remarks: dict[str, tuple[int, str]] = {}
 
-    def add(self, result: TaskResult) -> None:
-        """Add the result of a task."""
-        if not self._keep_moments:
+    def expect(self, cells: Sequence[tuple[str, int]]) -> None:
+        """Make places for the curves of cells, each given by its key and its number of realisations."""
+        for cell, (key, _) in enumerate(cells):
+            self._cells_of.setdefault(key, []).append(cell)
+        self._count = np.array([count for _, count in cells])
+        shape = len(cells), int(self._count.max())
+        curves, pull_offs = self._room.empty((*shape, *self._shape)), np.full((*shape, len(PullOff._fields)), np.nan)
+        curves[np.arange(shape[1]) >= self._count[:, None]] = np.nan  # the others are all put there
+        self.places = CollectedResults({"curves": curves}, pull_offs, not_run(shape))
+
+    def add(self, result: TaskResult) -> Ints:
+        """Add the result of a task; return the runs that got their places, as indices of cells and realisations."""
+        self.none_done &= bool((result.diagnostics["status"] == FAILED).all())
+        placed = np.zeros(0, dtype=np.int64)
+        if self.places is not None:
+            placed = self._place(result, self.places)
+        elif not self._keep_moments:
             self._results.append(result._replace(moments=tuple(map(self._room.keep, result.moments))))
-            if self._watched is None:
-                return
+        if self._keep_moments or self._watched is not None:
+            self._add_moments(result)
+        return placed
+
+    def _place(self, result: TaskResult, places: CollectedResults) -> Ints:
+        """Put rows where they are in the result, which may be several cells alike; return where, as ``add`` does."""
+        rows = zip(result.cell.tolist(), result.first.tolist(), strict=True)
+        selected = [
+            (row, cell, first)
+            for row, (number, first) in enumerate(rows)
+            for cell in self._cells_of.get(result.keys[number], ())
+            if first < self._count[cell]
+        ]
+        row, cell, first = np.array(selected, dtype=np.int64).reshape(-1, 3).T
+        places.values["curves"][cell, first] = result.moments[0][row]
+        places.pull_offs[cell, first] = result.pull_offs[row, MEAN]
+        for name, array in places.diagnostics.items():
+            array[cell, first] = result.diagnostics[name][row]
+        placed: Ints = cell * places.pull_offs.shape[1] + first
+        return placed
+
+    def _add_moments(self, result: TaskResult) -> None:
         rows_of: dict[str, list[int]] = {}
         columns = result.cell, result.first, result.diagnostics["status"], result.diagnostics["remark"]
         for row, (cell, first, status, remark) in enumerate(zip(*(each.tolist() for each in columns), strict=True)):
@@ -61,11 +98,6 @@ class Collector:
             merged = merge({name: column[rows] for name, column in result.diagnostics.items()})
             before = self._diagnostics.get(key)
             self._diagnostics[key] = merged if before is None else merge_rows([before, merged])
-
-    @property
-    def none_done(self) -> bool:
-        """Whether no realisation at all could be computed; to be asked before ``collected``."""
-        return not self._trees and all((result.diagnostics["status"] == FAILED).all() for result in self._results)
 
     def watched(self, key: str, count: int) -> Moments | None:
         """Return the moments of the watched variable over the first realisations of a cell; None where some failed."""
@@ -90,32 +122,14 @@ class Collector:
         return self._collect_moments(cells) if self._keep_moments else self._collect_curves(cells)
 
     def _collect_curves(self, cells: Sequence[tuple[str, int]]) -> CollectedResults:
-        cells_of: dict[str, list[int]] = {}
-        for cell, (key, _) in enumerate(cells):
-            cells_of.setdefault(key, []).append(cell)
-        count = np.array([count for _, count in cells])
-        shape = len(cells), int(count.max())
-        curves, diagnostics = self._room.empty((*shape, *self._shape)), not_run(shape)
-        curves.fill(np.nan)
-        pull_offs = np.full((*shape, len(PullOff._fields)), np.nan)
+        if self.places is None:
+            self.expect(cells)
+        assert self.places is not None
         while self._results:
-            result = self._results.pop()
-            rows = zip(result.cell.tolist(), result.first.tolist(), strict=True)
-            selected = [
-                (row, cell, first)
-                for row, (number, first) in enumerate(rows)
-                for cell in cells_of.get(result.keys[number], ())
-                if first < count[cell]
-            ]
-            if selected:
-                row, cell, first = np.array(selected).T
-                curves[cell, first] = result.moments[0][row]
-                pull_offs[cell, first] = result.pull_offs[row, MEAN]
-                for name, array in diagnostics.items():
-                    array[cell, first] = result.diagnostics[name][row]
-        if ((diagnostics["status"] == NOT_RUN) & (np.arange(shape[1]) < count[:, None])).any():
+            self._place(self._results.pop(), self.places)
+        if np.count_nonzero(self.places.diagnostics["status"] != NOT_RUN) < self._count.sum():
             raise AssertionError("a realisation was neither computed nor did it fail")
-        return CollectedResults({"curves": curves}, pull_offs, diagnostics)
+        return self.places
 
     def _collect_moments(self, cells: Sequence[tuple[str, int]]) -> CollectedResults:
         statistics = {name: np.full((len(cells), *self._shape), np.nan) for name in ("mean", "sem", "min", "max")}

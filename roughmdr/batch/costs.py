@@ -192,15 +192,16 @@ def file_bytes(plan: Plan, runs: int) -> int:
 
 
 def result_bytes(plan: Plan, runs: int, *, on_disk: bool = True) -> int:
-    """Return the memory [byte] while the result is assembled: runs as they came, and in their places.
+    """Return the memory [byte] while the result is assembled: as it came, unless curves got their places at once, and
+    in its places.
 
     Curves beyond some are ``on_disk`` where they are written to a file and there is space.
     """
-    values, beside_curves = _value_bytes(plan, runs), 0
+    values, beside_curves, copies = _value_bytes(plan, runs), 0, 2
     if plan.scene.output.keep == "curves":
-        beside_curves = _RUN_BYTES * runs
+        beside_curves, copies = _RUN_BYTES * runs, 1 if plan.scene.accuracy is None else 2
         values = min(values, IN_MEMORY) if on_disk else values
-    return _BRANCH * plan.steps + 2 * values + beside_curves
+    return _BRANCH * plan.steps + copies * values + beside_curves
 
 
 def ensemble_bytes(plan: Plan) -> float:

@@ -109,6 +109,12 @@ def assemble(
     return result._replace(attrs={**result.attrs, "checksum": result.checksum()})
 
 
+def begun(plan: Plan, collected: CollectedResults, variables: Sequence[str]) -> Labelled:
+    """Return what is known of a result while its curves are computed: they, with the coordinates."""
+    curves = _curves(plan, collected.values, variables, (*plan.sizes, "realization"))
+    return Labelled(curves, plan.coordinates(), {"title": plan.scene.title})
+
+
 def _curves(
     plan: Plan, collected: dict[str, Floats], variables: Sequence[str], runs: tuple[str, ...]
 ) -> dict[str, Array]:

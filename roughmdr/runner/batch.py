@@ -23,7 +23,7 @@ from roughmdr.batch.task_result import TaskResult
 from roughmdr.batch.tasks import RunRange, Task, first_error, prepare_all, split_into_tasks
 from roughmdr.errors import RoughmdrError, StoreError, Unfinished
 from roughmdr.numerics.compiling import compiling
-from roughmdr.result.assemble import assemble
+from roughmdr.result.assemble import assemble, begun as begun_result
 from roughmdr.runner.backend import Backend
 from roughmdr.runner.cluster import Cluster
 from roughmdr.runner.local import Pool, Serial, Sink, Threads
@@ -38,7 +38,7 @@ from roughmdr.storage.zarr_store import check_package
 from roughmdr.variables import FAILED
 
 _FORCE = "force"
-_COPIES = 4  # number of copies of large curves on the disk: task results, as they came, in their places, the result
+_COPIES = 3  # copies of large curves on the disk: task results, in their places, the result; as they came, [accuracy]
 
 
 class Beginning(NamedTuple):
@@ -105,7 +105,7 @@ def at_work(
         runs = sum(method.realizations for method in beginning.rounds.methods)  # runs in the first round
         if assembled:
             remedy = "fewer steps or realizations, or output.keep = 'statistics', take less"
-            needed = _COPIES * file_bytes(plan, runs)
+            needed = (_COPIES + (plan.scene.accuracy is not None)) * file_bytes(plan, runs)
             on_disk = writer.target is not None and shutil.disk_usage(writer.target.parent).free > needed
             check_memory(result_bytes(plan, runs, on_disk=on_disk), "the run", remedy)
         if backend.is_local:
@@ -154,6 +154,8 @@ class Batch:
 
     def run(self, *, quiet: bool) -> Labelled:
         """Run all rounds; return the result, whose history continues that of the one that it may replace."""
+        if self._plan.scene.accuracy is None and not self._plan.keeps_statistics:
+            self._collector.expect([(method.key, method.realizations) for method in self._rounds.methods])
         with interruptible(lambda: self._writer.begun, self._saved_message) as stop:
             if self._writer.store is not None and not self._writer.store.alone:
                 self._writer.begin(self._plan.scene.toml, self._command)
@@ -161,7 +163,7 @@ class Batch:
                 try:
                     ranges = self._rounds.begin()
                     while ranges:
-                        self._round(ranges, display, stop, self._collector.add)
+                        self._round(ranges, display, stop, self._add)
                         ranges = self._rounds.next(self._collector)
                     self._together.await_turn(stop)
                 except WrittenElsewhereError as written:
@@ -190,11 +192,11 @@ class Batch:
 
     def _finish(self) -> Labelled:
         """Assemble the result and write it."""
-        methods, none_done = self._rounds.methods, self._collector.none_done
+        methods = self._rounds.methods
         cells = [(method.key, method.realizations) for method in methods]
         collected = self._collector.collected(cells)
         failed = collected.diagnostics["status"] == FAILED
-        if none_done:
+        if self._collector.none_done:
             error = first_error(str(collected.diagnostics["remark"][failed][0]))
             name = self._plan.name_of(int(np.argwhere(failed)[0, 0]), 0)
             raise (type(error) if isinstance(error, RoughmdrError) else Unfinished)(f"{name}: {error}")
@@ -204,6 +206,9 @@ class Batch:
             check_no_less(self._writer.target, self._old, result, self._rounds.keys)
         self._writer.finish(result, complete=not (failed.any() or self._reusable.has_unused(cells)))
         return result
+
+    def _add(self, result: TaskResult) -> None:
+        self._writer.placed(self._collector.add(result))
 
     def _saved_message(self) -> str:
         return self._writer.saved_message or "nothing was written"
@@ -249,6 +254,9 @@ class Batch:
         on_cluster = isinstance(self._pool, Cluster)
         if len(tasks) > 1:
             self._writer.begin(self._plan.scene.toml, self._command)
+            if places := self._collector.places:
+                data = begun_result(self._plan, places, self._variables)
+                self._writer.grow(data, places.diagnostics["status"])
         if not on_cluster:
             prepare_all(self._plan, [runs for task in tasks for runs in task.ranges])
         pool = Serial() if len(tasks) == 1 and isinstance(self._pool, Threads) else self._pool

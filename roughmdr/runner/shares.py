@@ -93,9 +93,8 @@ def _common_scene(stores: list[CheckpointStore]) -> str:
             raise StoreError(f"{store.folder}: was made with {store.versions}; {remedy}")
     scenes = {store.scene: store.folder for store in stores if store.scene}
     if len(scenes) > 1:
-        raise StoreError(
-            f"{' and '.join(map(str, scenes.values()))}: are parts of different scenes; compute one kind again"
-        )
+        folders = " and ".join(map(str, scenes.values()))
+        raise StoreError(f"{folders}: are parts of different scenes; compute one kind again")
     for scene in scenes:
         return scene
     raise StoreError(f"{stores[0].folder}: keeps nothing yet")

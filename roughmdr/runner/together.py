@@ -44,9 +44,9 @@ class Together:
         """
         target, store = self._writer.target, self._writer.store
         if target is not None and self._writer.begun and store is not None and store.ended:
-            self._writer.flush()
             result = find_previous(target)
             if result is None or not is_finished(result, self._plan, self._keys):
+                self._writer.flush()
                 raise StoreError(f"{store.folder}: cannot be written: {os.strerror(errno.ENOENT)}")
             raise WrittenElsewhereError(result)
 

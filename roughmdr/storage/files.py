@@ -157,15 +157,15 @@ def replace_atomically(path: Path, folder: Path | None = None) -> Iterator[Path]
 
 
 @contextmanager
-def replace_folder_atomically(path: Path, folder: Path | None = None) -> Iterator[Path]:
-    """Yield a temporary folder to write to, as ``replace_atomically`` does a file.
+def replace_folder_atomically(path: Path, folder: Path | None = None, begun: Path | None = None) -> Iterator[Path]:
+    """Yield a temporary folder to write to, as ``replace_atomically`` does a file, or one that was ``begun``.
 
     Where the system cannot exchange two names, nothing is at ``path`` for a moment; the old one is ``before_of`` it.
     """
     check_writable(path, as_zarr=True)
     path = destination(path)
     with convert_os_errors(path):
-        temporary = Path(tempfile.mkdtemp(prefix=_TEMPORARY_PREFIX, suffix=".tmp", dir=folder or path.parent))
+        temporary = begun or Path(tempfile.mkdtemp(".tmp", _TEMPORARY_PREFIX, folder or path.parent))
         try:
             yield temporary
             for each in (*temporary.rglob("*"), temporary):

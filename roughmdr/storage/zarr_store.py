@@ -2,7 +2,7 @@
 
 import math
 import warnings
-from collections.abc import Iterator
+from collections.abc import Collection, Iterable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -25,46 +25,64 @@ _ORDER = {name: place for place, name in enumerate(LAW_VARIABLES)}
 _CHUNK_SIZE = 2**18  # most elements of a chunk, 2 MB of numbers: Zarr advises at least 1 MB, uncompressed
 
 
-def write_zarr(data: Labelled, path: Path, folder: Path | None = None) -> None:
+def write_zarr(data: Labelled, path: Path, folder: Path | None = None, grown: Path | None = None) -> None:
     """Write ``data`` to ``path`` by way of a temporary folder in ``folder``, beside ``path`` by default.
 
-    StoreError if that fails.
+    A store that has ``grown`` until it holds all curves of ``data`` becomes it. StoreError if that fails.
     """
-    zarr = _package()
+    with replace_folder_atomically(path, folder, grown) as temporary:
+        write_arrays(data, temporary)
+
+
+def write_arrays(data: Labelled, folder: Path, later: Collection[str] = ()) -> dict[str, "zarr.Array[Any]"]:
+    """Write all that is not there yet, but the values of arrays that come ``later``; return arrays that were not."""
+    zarr, created = _package(), dict[str, Any]()
     # Warnings are of texts and of common metadata, which later versions of the format may store in other ways.
-    with replace_folder_atomically(path, folder) as temporary, warnings.catch_warnings(action="ignore"):
-        group = zarr.open_group(temporary, mode="w", zarr_format=3)
-        group.attrs.update({name: _plain(value) for name, value in data.attrs.items()})
+    with warnings.catch_warnings(action="ignore"):
+        group = zarr.open_group(folder, mode="a", zarr_format=3)
+        group.attrs.put({name: _plain(value) for name, value in data.attrs.items()})
         arrays = data.coordinates | data.variables
         chunks = _chunks(max(arrays.values(), key=lambda array: array.values.size))
         for name, array in arrays.items():
             attrs = {key: _plain(value) for key, value in attributes_in_file(data, name).items()}
-            _write(group, name, array, attrs, tuple(chunks.get(dim, data.sizes[dim]) for dim in array.dims))
-        zarr.consolidate_metadata(temporary)
+            along = tuple(chunks.get(dim, data.sizes[dim]) for dim in array.dims)
+            if name in group and group[name].chunks == along:
+                group[name].attrs.put(attrs)
+                continue
+            created[name] = _create(group, name, array, attrs, along)
+            for block in () if name in later else _blocks(array.values.shape, along):
+                part = np.asarray(array.values[block])
+                created[name][block] = part.astype(object) if part.dtype.kind in "OU" else part
+        zarr.consolidate_metadata(folder)
+    return created
 
 
-def _write(group: "zarr.Group", name: str, array: Array, attrs: dict[str, Any], chunks: tuple[int, ...]) -> None:
-    values = array.values
-    is_text = values.dtype.kind in "OU"
-    stored = group.create_array(
+def _create(
+    group: "zarr.Group", name: str, array: Array, attrs: dict[str, Any], chunks: tuple[int, ...]
+) -> "zarr.Array[Any]":
+    kind = array.values.dtype.kind
+    return group.create_array(
         name,
-        shape=values.shape,
+        shape=array.values.shape,
         chunks=chunks,
-        dtype=str if is_text else values.dtype,
-        fill_value=math.nan if values.dtype.kind == "f" else None,
+        dtype=str if kind in "OU" else array.values.dtype,
+        fill_value=math.nan if kind == "f" else None,
         attributes=attrs,
         dimension_names=array.dims,
         config={"write_empty_chunks": True},  # else NaN would lose their signs
+        overwrite=True,
     )
-    for block in _blocks(values.shape, chunks):
-        part = np.asarray(values[block])
-        stored[block] = part.astype(object) if is_text else part
 
 
 def _blocks(shape: tuple[int, ...], chunks: tuple[int, ...]) -> Iterator[tuple[slice, ...]]:
     """Yield the indices of each chunk."""
     for first in np.ndindex(*(-(-size // chunk) for size, chunk in zip(shape, chunks, strict=True))):
-        yield tuple(slice(i * chunk, (i + 1) * chunk) for i, chunk in zip(first, chunks, strict=True))
+        yield block_of(first, chunks)
+
+
+def block_of(number: Iterable[int], chunks: tuple[int, ...]) -> tuple[slice, ...]:
+    """Return the indices of what is in a chunk, which is given by its number along each dimension."""
+    return tuple(slice(i * chunk, (i + 1) * chunk) for i, chunk in zip(number, chunks, strict=True))
 
 
 def _chunks(largest: Array) -> dict[str, int]:

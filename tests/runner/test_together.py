@@ -194,19 +194,6 @@ def test_runs_that_fail_fail_for_both(folder: Path) -> None:
     assert (folder / "out.nc.parts").is_dir()
 
 
-def test_another_scene_and_a_fresh_begin_are_refused(folder: Path) -> None:
-    with running(Batch(folder, code=WITH_OTHERS)) as first:
-        first.wait_for_lines(1)
-        write_scene(folder.parent / "other", CURVES | {"seed": 77})
-        for options, scene_file in ((["--fresh"], "scene.toml"), ([], "../other/scene.toml")):
-            with running(Batch(folder, *options, scene=scene_file)) as second:
-                status, said = second.end()
-            assert status == 2, said
-            assert f"out.nc: another run is writing it (process {first.pid} on " in said
-            assert_no_traceback(said)
-        first.kill()
-
-
 def test_a_process_does_not_join_itself(folder: Path) -> None:
     plan = make_plan(read(folder / "scene.toml"))
     with begun(plan, folder / "out.nc", resume=True) as beginning:

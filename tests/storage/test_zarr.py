@@ -174,7 +174,7 @@ def test_if_it_cannot_be_written_the_one_of_before_stays(tmp_path: Path, monkeyp
     def only_away(self: Path, target: Path) -> Path:
         return full() if self.name.endswith(".tmp") else rename(self, target)
 
-    for where, name, broken in ((zarr_store, "_write", full), (Path, "rename", only_away)):
+    for where, name, broken in ((zarr_store, "write_arrays", full), (Path, "rename", only_away)):
         with monkeypatch.context() as patched:
             patched.setattr(files, "_exchange", lambda *_: False)
             patched.setattr(where, name, broken)

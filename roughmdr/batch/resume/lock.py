@@ -12,7 +12,7 @@ from roughmdr.batch.resume.manifest import ManifestTail
 from roughmdr.errors import StoreError
 
 LOCK = "lock"
-_BEGINNING = 10.0  # longest time [s] to wait for another run to say which batch it computes
+_BEGINNING = 60.0  # longest time [s] to wait for another run to say which batch it computes
 _BETWEEN_TRIES = 0.05  # time [s] between two tries
 _held_here: set[tuple[int, int]] = set()  # device and inode of the locks of this process, which shares none with itself
 

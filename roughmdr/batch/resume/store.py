@@ -27,7 +27,8 @@ from roughmdr.batch.task_result import TaskResult
 from roughmdr.errors import StoreError
 from roughmdr.storage.files import convert_os_errors, sync_folder
 
-_OWN_FILES = re.compile(rf"{re.escape(MANIFEST)}|[0-9]{{6,}}\.npz(\.tmp)?|\.roughmdr\..*")
+SO_FAR = "so_far.zarr"
+_OWN_FILES = re.compile(rf"{re.escape(MANIFEST)}|{re.escape(SO_FAR)}|[0-9]{{6,}}\.npz(\.tmp)?|\.roughmdr\..*")
 """Names of all that is written to the folder, but the lock and claims: nothing else is removed."""
 _FILES_OF_ONE = 10**6  # numbers of files that each process has to itself where several write to a folder
 
@@ -213,7 +214,8 @@ def locked_store(target: Path, *, of_share: bool = False, joins: BatchName | Non
         lock = acquire_lock(folder, target, joins)
     try:
         with convert_os_errors(folder):
-            for path in folder.glob("*.tmp") if lock.alone else ():
+            # Neither whole, nor known to be on the disk.
+            for path in (*folder.glob("*.tmp"), *folder.glob(SO_FAR)) if lock.alone else ():
                 if _OWN_FILES.fullmatch(path.name):
                     _remove(path)
             store = CheckpointStore(folder, lock, of_share=of_share)
@@ -222,6 +224,7 @@ def locked_store(target: Path, *, of_share: bool = False, joins: BatchName | Non
         finally:
             give_up(folder)
             if lock.is_last() and store.removable:
+                shutil.rmtree(folder / SO_FAR, ignore_errors=True)
                 with suppress(OSError):
                     (folder / MANIFEST).unlink()
     finally:

@@ -2,23 +2,30 @@
 
 import os
 from collections import deque
+from collections.abc import Callable
 from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import ExitStack
 from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
 
 from roughmdr.batch.resume.keys import versions
 from roughmdr.batch.resume.lock import BatchName
-from roughmdr.batch.resume.store import CheckpointStore, locked_store, store_folder
+from roughmdr.batch.resume.store import SO_FAR, CheckpointStore, locked_store, store_folder
 from roughmdr.batch.task_result import TaskResult
 from roughmdr.errors import StoreError
+from roughmdr.numerics.arguments import Ints
 from roughmdr.storage.files import ZARR_ENDING
+from roughmdr.storage.growing_store import GrowingStore
 from roughmdr.storage.labelled import Labelled
 from roughmdr.storage.netcdf_writing import write_netcdf
 from roughmdr.storage.zarr_store import write_zarr
 from roughmdr.variables import FAILED
 
 _MAX_NAME = 255  # bytes of a file's name
-_MAX_PENDING = 16  # task results that may wait to be written before the batch waits
+_MAX_PENDING = 16  # task results and chunks that may wait to be written before the batch waits
 
 
 class CheckpointWriter:
@@ -36,6 +43,7 @@ class CheckpointWriter:
         self._cleared, self._replaces = False, ""
         self._thread: ThreadPoolExecutor | None = None
         self._pending: deque[Future[None]] = deque()
+        self._growing: GrowingStore | None = None
         if target is not None and len(os.fsencode(store_folder(target).name)) <= _MAX_NAME:
             batch = BatchName(joins, versions()) if joins else None
             self.store = stack.enter_context(locked_store(target, of_share=of_share, joins=batch))
@@ -75,10 +83,27 @@ class CheckpointWriter:
         if failed.any():
             runs = [(result.keys[result.cell[row]], int(result.first[row])) for row in failed.nonzero()[0]]
             remark = str(result.diagnostics["remark"][failed][0])
-            self._pending.append(self._thread.submit(self.store.note_failed, runs, remark))
+            self._submit(self._thread, self.store.note_failed, runs, remark)
         if not failed.all():
             done = result.select_rows((~failed).nonzero()[0])
-            self._pending.append(self._thread.submit(self.store.write, done))
+            self._submit(self._thread, self.store.write, done)
+
+    def grow(self, data: Labelled, status: NDArray[Any]) -> None:
+        """Begin a ``GrowingStore`` if the target is a Zarr store and checkpoints are written, first by this process."""
+        folder, first = self._folder, self.store is not None and self.store.alone
+        if self._thread is not None and self._growing is None and self._is_zarr and first and folder is not None:
+            self._growing = GrowingStore(data, status, folder / SO_FAR)
+            self.placed(np.arange(status.size))
+
+    def placed(self, runs: Ints) -> None:
+        """Write the chunks that these runs made whole, if a store grows; StoreError where that fails."""
+        if self._thread is not None and self._growing is not None:
+            for chunk in self._growing.whole(runs):
+                self._submit(self._thread, self._growing.write, chunk)
+
+    def _submit(self, thread: ThreadPoolExecutor, function: Callable[..., None], *arguments: Any) -> None:
+        """Have something written; wait while much is to be written already."""
+        self._pending.append(thread.submit(function, *arguments))
         while self._pending and (self._pending[0].done() or len(self._pending) > _MAX_PENDING):
             self._pending.popleft().result()
 
@@ -92,13 +117,24 @@ class CheckpointWriter:
         if self.target is None:
             return
         self.flush()
-        folder = None if self.store is None else self.store.folder  # the next run removes what is left behind there
-        if folder is not None and folder.stat().st_dev != self.target.parent.stat().st_dev:
-            folder = None  # a result cannot be renamed from one disk to another
-        write = write_zarr if self.target.suffix.lower() == ZARR_ENDING else write_netcdf
-        write(result, self.target, folder)
+        if self._is_zarr:
+            write_zarr(result, self.target, self._folder, None if self._growing is None else self._growing.folder)
+        else:
+            write_netcdf(result, self.target, self._folder)
         for store in [*([] if self.store is None else [self.store]), *self.joined] if complete else []:
             store.clear()
+
+    @property
+    def _is_zarr(self) -> bool:
+        return self.target is not None and self.target.suffix.lower() == ZARR_ENDING
+
+    @property
+    def _folder(self) -> Path | None:
+        """Folder to write a result in, where the next run removes what is left behind; None for that of the target."""
+        if self.store is None or self.target is None:
+            return None
+        folder = self.store.folder  # a result cannot be renamed from one disk to another
+        return folder if folder.stat().st_dev == self.target.parent.stat().st_dev else None
 
     @property
     def saved_message(self) -> str:
