@@ -5,12 +5,13 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from roughmdr.errors import StoreError
 from roughmdr.numerics.arguments import Floats, Ints
 from roughmdr.pictures.curves import quantiles
 from roughmdr.pictures.style import BRANCH_COLOURS, colours, set_title
-from roughmdr.result.view import ResultView
+from roughmdr.result.view import ResultView, step_blocks
 from roughmdr.variables import TRAVEL
 
 if TYPE_CHECKING:
@@ -105,19 +106,29 @@ def _quantities(result: ResultView) -> Iterator[Convergence]:
     done = result.done
     for name, title in ((curve, label), ("pull_off_force", "pull-off force")):
         for number, cell in enumerate(result.cells):
-            if name not in result.variables or result.method(cell) == "expected":
+            if name not in result.variables or result.method(cell) == "expected" or not done[cell].any():
                 continue
-            values, span = result.variables[name].values[cell][done[cell]], 0.0
+            values, span = result.variables[name].values[cell], 0.0
             if name == curve:
-                values = values[:, np.isfinite(values).all(axis=0)]
-                if not values.size:
+                means = _means(values, done[cell])
+                if np.isnan(means).all():
                     continue
-                means = values.mean(axis=0)
-                span = float(np.ptp(means)) if prescribed else 0.0
-                values = values[:, int((-means if prescribed else np.abs(means)).argmax())]
+                span = float(np.nanmax(means) - np.nanmin(means)) if prescribed else 0.0
+                values = values[:, int(np.nanargmax(-means if prescribed else np.abs(means)))]
+            values = values[done[cell]]
             values = values[np.isfinite(values)]
             if values.size > 1 and np.ptp(values) > 0.0:
                 yield Convergence(title, number, values, span)
+
+
+def _means(values: Floats, done: NDArray[np.bool_]) -> Floats:
+    """Return the mean over the realisations that are ``done`` at each step; NaN where not all of them have a number."""
+    means = np.full(values.shape[1], np.nan)
+    for block in step_blocks(*values.shape):
+        part = values[:, block][done]
+        whole = np.isfinite(part).all(axis=0)
+        means[block][whole] = part[:, whole].mean(axis=0)
+    return means
 
 
 def _draw_panel(ax: "Axes", result: ResultView, found: list[Convergence]) -> float:

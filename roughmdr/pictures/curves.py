@@ -8,9 +8,9 @@ import numpy as np
 
 from roughmdr.errors import StoreError
 from roughmdr.model_error.parts import PLASTIC
-from roughmdr.numerics.arguments import Floats
+from roughmdr.numerics.arguments import Floats, Ints
 from roughmdr.result.model_errors import error_of_mean
-from roughmdr.result.view import Leg, ResultView
+from roughmdr.result.view import Leg, ResultView, step_blocks
 from roughmdr.schema.wording import suggestion
 from roughmdr.variables import CURVE_VARIABLES, LAW_VARIABLES, OVER_AREA, TIME
 
@@ -63,6 +63,25 @@ class Quantity(NamedTuple):
         return values if self.area is None else np.asarray(values / self.area[cell])
 
 
+class Runs(NamedTuple):
+    """Curves of the realisations of a cell that were computed, of which no more are copied than are asked for."""
+
+    values: Floats  # [realization, step]; of all
+    computed: Ints  # numbers of the realisations
+    area: float
+
+    def some(self, which: Ints | slice, steps: slice = slice(None)) -> Floats:
+        """Return some of them, by their place among those computed, as they are drawn."""
+        found = self.values[self.computed[which], steps]
+        found /= self.area
+        return found
+
+    def quantiles(self, shares: list[float]) -> Floats:
+        """Return quantiles over the realisations: [share, step]."""
+        blocks = step_blocks(self.computed.size, self.values.shape[1])
+        return np.concatenate([quantiles(self.some(slice(None), block), shares, axis=0) for block in blocks], axis=1)
+
+
 class Curve(NamedTuple):
     """A quantity in one cell of a result, over one loading or unloading."""
 
@@ -74,8 +93,8 @@ class Curve(NamedTuple):
     low: Floats  # two standard errors below it, or the lower edge of the band of a median; NaN if there is none
     high: Floats
     model_error: Floats  # in its unit; NaN where it is not known
-    runs: Floats  # [realization, step]; computed ones, none if only statistics were kept, and of a median
-    runs_x: Floats
+    runs: Runs  # none if only statistics were kept, and of a median
+    runs_x: Runs
 
 
 def drawn_against(result: ResultView, asked: str | None) -> str:
@@ -97,24 +116,26 @@ def curves_of(result: ResultView, quantity: Quantity, x: Quantity) -> Iterator[C
     xs = _runs(result, x.variable)
     x_mean = _mean(result, x.variable)[0]
     model_error = _model_error(result, name, mean)
-    mean, error, model_error, runs = map(quantity.scaled, (mean, error, model_error, runs))
-    x_mean, xs = x.scaled(x_mean), x.scaled(xs)
+    mean, error, model_error, x_mean = *map(quantity.scaled, (mean, error, model_error)), x.scaled(x_mean)
     sticky, yielding = result.adheres, name == "stiffness" and PLASTIC in result.variables
     for number, cell in enumerate(np.ndindex(mean.shape[:-1])):
-        some_missing = runs.size and not done[cell].all()
-        of_cell, x_of_cell = (values[cell][done[cell]] if some_missing else values[cell] for values in (runs, xs))
+        computed = np.flatnonzero(done[cell])[: runs.shape[-2]]
+        areas = [1.0 if each.area is None else float(each.area[cell]) for each in (quantity, x)]
         for leg, (branch, along) in enumerate(_legs(result)):
             rises = yielding and branch == "unloading" and result.branches[along[0]] != branch
-            steps = along[int(rises) :]  # at a turn that is not repeated the stiffness is that of yielding
-            some = of_cell[:, steps]
+            # At a turn that is not repeated the stiffness is that of yielding.
+            steps = slice(along[int(rises)], along[-1] + 1)
+            some, some_x = (
+                Runs(each[cell][:, steps], computed, area) for each, area in zip((runs, xs), areas, strict=True)
+            )
             middle, off = mean[cell][steps], 2.0 * error[cell][steps]
             low, high = middle - off, middle + off
             if name == "stiffness" and sticky and branch == "unloading":  # the variance of the stiffness is infinite
                 middle, low, high = _medians(middle, some)
-                some = some[:0]
+                some = some._replace(computed=computed[:0])
             yield Curve(
                 number, leg, branch, x_mean[cell][steps], middle, low, high,
-                model_error[cell][steps], some, x_of_cell[: len(some), steps],
+                model_error[cell][steps], some, some_x,
             )  # fmt: skip
 
 
@@ -134,13 +155,16 @@ def _legs(result: ResultView) -> list[Leg]:
     ]
 
 
-def _medians(mean: Floats, runs: Floats) -> tuple[Floats, Floats, Floats]:
+def _medians(mean: Floats, runs: Runs) -> tuple[Floats, Floats, Floats]:
     """Return the median of the realisations with a band of two thirds of them; few are joined over some steps."""
-    values = runs if len(runs) else mean[None]
-    width = 1 if len(values) >= _FEW else min(_ROBUST, 1 + 2 * (mean.size // 8))
+    shares = [_BAND[0], 0.5, _BAND[1]]
+    if runs.computed.size >= _FEW:
+        low, middle, high = runs.quantiles(shares)
+        return middle, low, high
+    values, width = runs.some(slice(None)) if runs.computed.size else mean[None], min(_ROBUST, 1 + 2 * (mean.size // 8))
     padded = np.pad(values, ((0, 0), (width // 2, width // 2)), mode="edge")
     windows = np.lib.stride_tricks.sliding_window_view(padded, width, axis=1)
-    low, middle, high = quantiles(windows, [_BAND[0], 0.5, _BAND[1]], axis=(0, 2))
+    low, middle, high = quantiles(windows, shares, axis=(0, 2))
     return middle, low, high
 
 

@@ -9,7 +9,7 @@ from roughmdr.errors import RoughmdrError, StoreError
 from roughmdr.numerics.arguments import Floats
 from roughmdr.pictures.curves import Quantity
 from roughmdr.pictures.request import Request
-from roughmdr.result.view import ResultView
+from roughmdr.result.view import ResultView, parts_of
 from roughmdr.schema.wording import suggestion
 from roughmdr.variables import LAW_VARIABLES, OVER_AREA, PULL_OFF, RUN_VARIABLES
 
@@ -75,12 +75,17 @@ def _of_curve(result: ResultView, name: str, request: Request) -> Number:
             raise StoreError(f"at is {place!r}, which is none{suggestion(place, list(_PLACES))}")
         if place == name:
             raise StoreError(f"at {place} = {value} does not go with {name} itself: name another variable")
+        import xarray as xr
+
         from roughmdr.result.interpolation import at_value
 
         try:
-            found = ResultView(at_value(result.dataset, place, cast("ArrayLike", value), "loading"))
+            parts = [
+                at_value(each.dataset, place, cast("ArrayLike", value), "loading") for each in parts_of(result, 4.0)
+            ]
         except RoughmdrError as refused:
             raise StoreError(f"at {place} = {value}: {refused}") from None
+        found = ResultView(parts[0] if len(parts) == 1 else xr.concat(parts, "realization", data_vars="minimal"))
         if not found.holds(name):
             available = [each.removesuffix("_mean") for each in found.variables if "interpolation" not in each]
             raise StoreError(f"variable {name!r} is not in the result{suggestion(name, available)}")

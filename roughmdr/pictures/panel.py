@@ -100,14 +100,15 @@ def _draw_bands(ax: "Axes", curve: Curve, colour: str, scales: tuple[Scale, Scal
     if np.isfinite(curve.model_error).any():
         middle, off = scale(curve.middle), scale(curve.model_error)
         ax.fill_between(x, middle - off, middle + off, color="0.5", alpha=0.25, lw=0, zorder=0.5)
-    if alone and len(curve.runs) > 1:
-        shown = len(curve.runs)
+    if alone and (count := curve.runs.computed.size) > 1:
+        shown = count
         if shown > MAX_RUNS:
             shown = _SOME_RUNS
-            low, high = quantiles(curve.runs, list(_MOST), axis=0)
+            low, high = curve.runs.quantiles(list(_MOST))
             ax.fill_between(x, scale(low), scale(high), color=colour, alpha=0.12, lw=0, zorder=1)
-        some = np.unique(np.linspace(0, len(curve.runs) - 1, shown).astype(int))
-        lines = ax.plot(x_scale(curve.runs_x[some]).T, scale(curve.runs[some]).T, color=colour, lw=0.3, alpha=0.25)
+        some = np.unique(np.linspace(0, count - 1, shown).astype(int))
+        drawn = x_scale(curve.runs_x.some(some)).T, scale(curve.runs.some(some)).T
+        lines = ax.plot(*drawn, color=colour, lw=0.3, alpha=0.25)
         for line in lines:
             line.set_zorder(1.2)
     ax.fill_between(x, scale(curve.low), scale(curve.high), color=colour, alpha=0.3, lw=0, zorder=1.5)
@@ -120,8 +121,9 @@ def _visible(panel: Panel) -> Floats:
     if panel.quantity.variable != "stiffness" and panel.cells <= MAX_NAMED:
         shown += [edge for curve in panel.curves for edge in (curve.low, curve.high)]
     if panel.cells == 1 and panel.quantity.variable != "stiffness":
-        some = [curve.runs[:: len(curve.runs) // _FOR_RANGE + 1] for curve in panel.curves if len(curve.runs)]
-        shown += [quantiles(runs, list(_MOST), axis=0).ravel() for runs in some]
+        runs = [curve.runs for curve in panel.curves if curve.runs.computed.size]
+        some = [each.some(slice(None, None, each.computed.size // _FOR_RANGE + 1)) for each in runs]
+        shown += [quantiles(each, list(_MOST), axis=0).ravel() for each in some]
     values = _joined(shown)
     return values if values.size else np.zeros(1)
 

@@ -12,7 +12,7 @@ from roughmdr.model_error.at_given import ALWAYS, FORCES, NUMBERS, STATED, error
 from roughmdr.model_error.parts import PLASTIC, PLASTIC_AT_FORCE
 from roughmdr.numerics.arguments import Floats
 from roughmdr.result.curves import Read
-from roughmdr.result.view import Leg, ResultView
+from roughmdr.result.view import Leg, ResultView, parts_of
 from roughmdr.storage.labelled import Array
 from roughmdr.variables import LATERAL, LAW_VARIABLES, MODEL_ERROR, ORIGINS, SEPARATION, WITH_MODEL_ERROR
 
@@ -144,14 +144,17 @@ def error_of_mean(result: ResultView, name: str) -> Floats:
     A load that some realisations do not bear, or an error that is not known, does not count.
     """
     suffix = "_mean" if result.keeps_statistics else ""
-    error = errors_along(result).get(f"{name}{suffix}{MODEL_ERROR}")
-    if error is None:
-        return np.full((*result.sweep.values(), result.sizes["step"]), np.nan)
-    if "realization" not in error.dims:
-        return error.values
-    known = np.isfinite(error.values)
-    axis, count = error.dims.index("realization"), known.sum(axis=error.dims.index("realization"))
-    total = np.where(known, error.values, 0.0).sum(axis=axis)
+    total, count = np.zeros((2, *result.sweep.values(), result.sizes["step"]))
+    for part in parts_of(result, 0.125):  # errors take some 8 times the curves
+        error = errors_along(part).get(f"{name}{suffix}{MODEL_ERROR}")
+        if error is not None:
+            if "realization" not in error.dims:
+                return error.values
+            runs = np.moveaxis(error.values, error.dims.index("realization"), 0)
+            known = np.isfinite(runs)
+            numbers = np.where(known, runs, 0.0)
+            numbers[0] += total
+            total, count = numbers.sum(axis=0), count + known.sum(axis=0)
     return np.asarray(np.divide(total, count, out=np.full(total.shape, np.nan), where=count > 0))
 
 

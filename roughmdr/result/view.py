@@ -1,6 +1,6 @@
 """The reader of results: cells, legs of the path, curves, and means over the realisations."""
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, NamedTuple, cast
 
@@ -30,6 +30,10 @@ from roughmdr.variables import (
 
 if TYPE_CHECKING:
     import xarray as xr
+
+
+AT_ONCE = 2**26
+"""Most bytes of curves that are copied at once: few beside the 1 GB of them that stays in memory."""
 
 
 class Leg(NamedTuple):
@@ -227,7 +231,13 @@ class ResultView:
         if name not in self._means:
             array = self.variables[name]
             known = self.done if "step" in array.dims else np.isfinite(array.values)
-            self._means[name] = mean_and_error(array.values, known)
+            if known.all() or "step" not in array.dims:
+                self._means[name] = mean_and_error(array.values, known)
+            else:  # what is known of each cell is copied
+                blocks = step_blocks(known.shape[-1], self.sizes["step"])
+                parts = [mean_and_error(array.values[..., block], known) for block in blocks]
+                mean, error = (np.concatenate(each, axis=-1) for each in zip(*parts, strict=True))
+                self._means[name] = mean, error
         return self._means[name]
 
     def known(self, name: str) -> Floats:
@@ -250,6 +260,23 @@ class ResultView:
     @staticmethod
     def _over_steps(arrays: Mapping[str, Array], name: str) -> bool:
         return name in arrays and "step" in arrays[name].dims
+
+
+def step_blocks(rows: int, steps: int) -> list[slice]:
+    """Return blocks of steps of which that many rows are copied at once."""
+    width = max(1, AT_ONCE // (8 * max(rows, 1)))
+    return [slice(first, first + width) for first in range(0, steps, width)]
+
+
+def parts_of(result: ResultView, share: float) -> Iterator[ResultView]:
+    """Yield parts of a result, each with some realisations, whose curves are a ``share`` of what is copied at once."""
+    count, size = result.sizes.get("realization", 1), sum(each.values.nbytes for each in result.variables.values())
+    some = max(1, int(share * AT_ONCE * count / size))
+    if some >= count:
+        yield result
+    else:
+        for first in range(0, count, some):
+            yield ResultView(result.dataset.isel(realization=slice(first, first + some)))
 
 
 def swept_values(coordinates: Mapping[str, Array], dims: Sequence[str], cell: tuple[int, ...]) -> dict[str, Array]:
