@@ -60,7 +60,7 @@ class Together:
             if store is None or store.claims.are_done(task.ranges):
                 yield task
             elif by_workers:
-                yield task._replace(claimed_in=store.folder.absolute())
+                yield task._replace(claimed_in=store.whole_path)
             elif store.claims.take(task.ranges):
                 yield task
 

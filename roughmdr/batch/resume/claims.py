@@ -126,8 +126,7 @@ _guard = threading.Lock()
 
 
 def claims_in(folder: Path) -> Claims:
-    """Return the claims of this process in a folder: to open their file twice would lose them."""
-    folder = folder.resolve()
+    """Return the claims of this process in a folder, by its whole path: to open their file twice would lose them."""
     with _guard:
         if folder not in _opened:
             _opened[folder] = Claims(folder)
@@ -137,6 +136,6 @@ def claims_in(folder: Path) -> Claims:
 def give_up(folder: Path) -> None:
     """Give up all claims of this process in a folder."""
     with _guard:
-        claims = _opened.pop(folder.resolve(), None)
+        claims = _opened.pop(folder, None)
     if claims is not None:
         claims.close()

@@ -59,6 +59,7 @@ class CheckpointStore:
 
     def __init__(self, folder: Path, lock: FolderLock | None = None, *, of_share: bool = False) -> None:
         self.folder, self._of_share, self._lock = folder, of_share, lock
+        self.whole_path = folder.resolve()  # found now: the current folder may vanish
         self.scene = ""
         """TOML text of the scene of the batch that began the folder; of a share, of the last that went on there."""
         self.versions = ""
@@ -81,7 +82,7 @@ class CheckpointStore:
     @property
     def claims(self) -> Claims:
         """The claims of this process on runs of the batch."""
-        return claims_in(self.folder)
+        return claims_in(self.whole_path)
 
     @property
     def empty(self) -> bool:
@@ -222,7 +223,7 @@ def locked_store(target: Path, *, of_share: bool = False, joins: BatchName | Non
         try:
             yield store
         finally:
-            give_up(folder)
+            give_up(store.whole_path)
             if lock.is_last() and store.removable:
                 shutil.rmtree(folder / SO_FAR, ignore_errors=True)
                 with suppress(OSError):
