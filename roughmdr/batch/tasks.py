@@ -17,6 +17,7 @@ from roughmdr.batch.plan import Cell, Plan
 from roughmdr.batch.realization import simulate_realization
 from roughmdr.batch.resume.claims import claims_in
 from roughmdr.batch.resume.keys import check_versions, versions
+from roughmdr.batch.resume.manifest import Runs
 from roughmdr.batch.task_result import ResultRow, Row, TaskResult, merge_rows, row_of
 from roughmdr.errors import RoughmdrError
 from roughmdr.loading.pull_off import PullOff
@@ -50,6 +51,11 @@ class Task(NamedTuple):
     keep_moments: bool  # whether moments are kept, not curves
     versions: str
     claimed_in: Path | None = None  # folder in which the runs are claimed from other processes before
+
+    @property
+    def runs(self) -> list[Runs]:
+        """All runs, as they are claimed."""
+        return [Runs(each.key, each.first, each.last) for each in self.ranges]
 
     def result_of(self, rows: Sequence[ResultRow]) -> TaskResult:
         """Make the result of rows, whose cells are indices of the ranges."""
@@ -120,7 +126,7 @@ def compute(task: Task) -> TaskResult | None:
     says why.
     """
     check_versions(task.versions)
-    if task.claimed_in is not None and not claims_in(task.claimed_in).take(task.ranges):
+    if task.claimed_in is not None and not claims_in(task.claimed_in).take(task.runs):
         return None
     rows: list[ResultRow] = []
     for number, runs in enumerate(task.ranges):

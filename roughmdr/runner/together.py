@@ -57,11 +57,11 @@ class Together:
         """
         store = self._writer.store if self._writer.begun else None
         for task in tasks:
-            if store is None or store.claims.are_done(task.ranges):
+            if store is None or store.claims.are_done(task.runs):
                 yield task
             elif by_workers:
                 yield task._replace(claimed_in=store.whole_path)
-            elif store.claims.take(task.ranges):
+            elif store.claims.take(task.runs):
                 yield task
 
     def await_turn(self, stop: threading.Event) -> None:

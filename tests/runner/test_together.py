@@ -32,7 +32,7 @@ from roughmdr.batch.plan import make_plan
 from roughmdr.batch.resume.claims import claims_in, give_up
 from roughmdr.batch.resume.kept import read_kept
 from roughmdr.batch.resume.keys import versions
-from roughmdr.batch.resume.manifest import RunsOfLine
+from roughmdr.batch.resume.manifest import Runs
 from roughmdr.batch.resume.store import CheckpointStore
 from roughmdr.batch.task_result import TaskResult, not_run
 from roughmdr.batch.tasks import RunRange, Task, compute
@@ -228,9 +228,9 @@ _CLAIM = """
 import sys
 from pathlib import Path
 from roughmdr.batch.resume.claims import claims_in
-from roughmdr.batch.resume.manifest import RunsOfLine
+from roughmdr.batch.resume.manifest import Runs
 claims = claims_in(Path(sys.argv[1]))
-print(*(claims.take([RunsOfLine("a", 10 * i, 10 * i + 10)]) for i in range(3)), claims.finish(), flush=True)
+print(*(claims.take([Runs("a", 10 * i, 10 * i + 10)]) for i in range(3)), claims.finish(), flush=True)
 sys.stdin.read()
 """
 
@@ -238,7 +238,7 @@ sys.stdin.read()
 def test_claims_last_as_long_as_their_process(tmp_path: Path) -> None:
     CheckpointStore(tmp_path).begin("scene", "versions", "", "")
     claims = claims_in(tmp_path)
-    mine, both = [RunsOfLine("a", 25, 40)], [RunsOfLine("b", 0, 5), RunsOfLine("a", 5, 6)]
+    mine, both = [Runs("a", 25, 40)], [Runs("b", 0, 5), Runs("a", 5, 6)]
     assert claims.take(mine)
     with subprocess.Popen(
         [sys.executable, "-c", _CLAIM, tmp_path], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True
@@ -258,7 +258,7 @@ def test_runs_that_are_stored_are_not_claimed(tmp_path: Path) -> None:
     store, claims = CheckpointStore(tmp_path), claims_in(tmp_path)
     store.begin("scene", "versions", "", "")
     key = "k"
-    assert claims.take([RunsOfLine(key, 0, 3)])
+    assert claims.take([Runs(key, 0, 3)])
     cell = make_plan(read(scene())).cells[0]
     task = Task((RunRange(key, cell, "sampled", 0, 3),), ("force",), False, versions(), tmp_path)
     result = compute(task)
@@ -266,6 +266,6 @@ def test_runs_that_are_stored_are_not_claimed(tmp_path: Path) -> None:
     store.write(result)
     assert result.runs == [(key, 0, 3)]
     assert compute(task) is None
-    assert not claims.take([RunsOfLine(key, 2, 5)])
-    assert claims.take([RunsOfLine(key, 3, 5), RunsOfLine("other", 0, 3)])
+    assert not claims.take([Runs(key, 2, 5)])
+    assert claims.take([Runs(key, 3, 5), Runs("other", 0, 3)])
     give_up(tmp_path)

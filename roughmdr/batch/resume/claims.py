@@ -10,10 +10,10 @@ import threading
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
-from typing import Protocol
 from zlib import crc32
 
-from roughmdr.batch.resume.manifest import ManifestTail, RunsOfLine, runs_of
+from roughmdr.batch.resume.manifest import ManifestTail, Runs, runs_of
+from roughmdr.storage.files import convert_os_errors
 
 NO_LOCKS = (errno.ENOSYS, errno.EOPNOTSUPP, errno.ENOLCK)
 """Error numbers of disks without locks, such as some that a cluster shares."""
@@ -23,31 +23,12 @@ _CELLS = 2**29  # number of places for cells, by a hash of their keys: two cells
 _APPENDING, _FINISHING = _CELLS * _RUNS, _CELLS * _RUNS + 1  # bytes of who appends to the manifest, and of who ends
 
 
-class Runs(Protocol):
-    """Realisations first ... last - 1 of a cell."""
-
-    @property
-    def key(self) -> str:
-        """Key of the cell."""
-        ...
-
-    @property
-    def first(self) -> int:
-        """First realisation."""
-        ...
-
-    @property
-    def last(self) -> int:
-        """Number after the last realisation."""
-        ...
-
-
 class Claims:
     """Claims of this process in a folder, until they are given up."""
 
     def __init__(self, folder: Path) -> None:
         self._file = os.open(folder / CLAIMS, os.O_RDWR | os.O_CREAT | os.O_NOFOLLOW, 0o666)
-        self._tail, self._done = ManifestTail(folder), dict[str, list[RunsOfLine]]()
+        self._tail, self._done = ManifestTail(folder), dict[str, list[Runs]]()
         self._guard = threading.Lock()
 
     def look(self) -> None:
@@ -129,7 +110,8 @@ def claims_in(folder: Path) -> Claims:
     """Return the claims of this process in a folder, by its whole path: to open their file twice would lose them."""
     with _guard:
         if folder not in _opened:
-            _opened[folder] = Claims(folder)
+            with convert_os_errors(folder):
+                _opened[folder] = Claims(folder)
         return _opened[folder]
 
 

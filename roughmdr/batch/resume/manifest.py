@@ -11,8 +11,8 @@ MANIFEST, FILE = "manifest.jsonl", "{:06d}.npz"
 _FILE_NAME = re.compile(r"[0-9]{6,}\.npz")
 
 
-class RunsOfLine(NamedTuple):
-    """Realisations first ... last - 1 of a cell that a line is about."""
+class Runs(NamedTuple):
+    """Realisations first ... last - 1 of a cell, which has a key."""
 
     key: str
     first: int
@@ -28,7 +28,7 @@ def manifest_lines(content: bytes) -> Iterator[dict[str, Any]]:
                 yield line
 
 
-def runs_of(line: dict[str, Any]) -> list[RunsOfLine] | None:
+def runs_of(line: dict[str, Any]) -> list[Runs] | None:
     """Return the runs that are stored, or have failed; None where an earlier version has not noted them."""
     match line:
         case {"failed": [*pairs]}:
@@ -37,7 +37,7 @@ def runs_of(line: dict[str, Any]) -> list[RunsOfLine] | None:
             pass
         case _:
             return None
-    return [RunsOfLine(*each) for each in given] if all(map(_is_range, given)) else None
+    return [Runs(*each) for each in given] if all(map(_is_range, given)) else None
 
 
 def _is_range(given: object) -> bool:
