@@ -7,7 +7,7 @@ import tempfile
 import threading
 import time
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import closing, contextmanager
 from pathlib import Path
 
 import numpy as np
@@ -89,8 +89,12 @@ def _overheads(tasks: int, workers: int, repeats: int) -> Floats:
     """
     plan = make_plan(small_scene(batch={"realizations": tasks}))
     found, skipped = np.full((repeats, len(SCHEDULERS), 3), np.nan), tasks // 10
-    with _cluster(workers) as (address, scheduler_pid), connected(address, None) as cluster:
-        pools: tuple[Pool, ...] = (Threads(workers), Processes(workers), cluster)
+    with (
+        _cluster(workers) as (address, scheduler_pid),
+        connected(address, None) as cluster,
+        closing(Processes(workers)) as processes,
+    ):
+        pools: tuple[Pool, ...] = (Threads(workers), processes, cluster)
         timed_batch(plan, cluster)  # the workers load what they need
         for repeat, (i, pool) in itertools.product(range(repeats), enumerate(pools)):
             arrival, inside, *processor = timed_batch(plan, pool, scheduler_pid if pool is cluster else None)

@@ -109,7 +109,7 @@ def assemble(
     return result._replace(attrs={**result.attrs, "checksum": result.checksum()})
 
 
-def begun(plan: Plan, collected: CollectedResults, variables: Sequence[str]) -> Labelled:
+def curves_so_far(plan: Plan, collected: CollectedResults, variables: Sequence[str]) -> Labelled:
     """Return what is known of a result while its curves are computed: they, with the coordinates."""
     curves = _curves(plan, collected.values, variables, (*plan.sizes, "realization"))
     return Labelled(curves, plan.coordinates(), {"title": plan.scene.title})

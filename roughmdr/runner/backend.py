@@ -1,7 +1,6 @@
 """Where tasks are computed: threads or processes of this machine, or a dask cluster."""
 
-from collections.abc import Callable
-from contextlib import AbstractContextManager, nullcontext
+from contextlib import AbstractContextManager, closing, nullcontext
 from typing import TYPE_CHECKING, NamedTuple
 
 from roughmdr.errors import RoughmdrError
@@ -11,7 +10,7 @@ from roughmdr.runner.local import Pool, Processes, Threads
 if TYPE_CHECKING:
     from distributed import Client
 
-_LOCAL: dict[str, Callable[[int], Pool]] = {"threads": Threads, "processes": Processes}
+_LOCAL = ("threads", "processes")
 _ADDRESSES = ("tcp://", "tls://")
 
 
@@ -47,6 +46,8 @@ class Backend(NamedTuple):
         """Open the pool that computes the tasks; RoughmdrError where a cluster does not answer."""
         if not isinstance(self.scheduler, str):
             return nullcontext(Cluster(self.scheduler))
-        if self.is_local:
-            return nullcontext(_LOCAL[self.scheduler](self.workers))
+        if self.scheduler == "processes":
+            return closing(Processes(self.workers))
+        if self.scheduler == "threads":
+            return nullcontext(Threads(self.workers))
         return connected(self.scheduler, self.tls)

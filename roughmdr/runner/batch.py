@@ -23,7 +23,7 @@ from roughmdr.batch.task_result import TaskResult
 from roughmdr.batch.tasks import RunRange, Task, first_error, prepare_all, split_into_tasks
 from roughmdr.errors import RoughmdrError, StoreError, Unfinished
 from roughmdr.numerics.compiling import compiling
-from roughmdr.result.assemble import assemble, begun as begun_result
+from roughmdr.result.assemble import assemble, curves_so_far
 from roughmdr.runner.backend import Backend
 from roughmdr.runner.cluster import Cluster
 from roughmdr.runner.local import Pool, Serial, Sink, Threads
@@ -161,17 +161,27 @@ class Batch:
                 self._writer.begin(self._plan.scene.toml, self._command)
             with progress(self._plan.scene.title, quiet=quiet) as display:
                 try:
-                    ranges = self._rounds.begin()
-                    while ranges:
-                        self._round(ranges, display, stop, self._add)
-                        ranges = self._rounds.next(self._collector)
-                    self._together.await_turn(stop)
+                    self._run_rounds(display, stop)
                 except WrittenElsewhereError as written:
                     display.add(total=display.done - display.total)
+                    for store in self._writer.joined:
+                        store.clear()
                     return written.result
             if stop.is_set():
                 raise Interrupted(f"interrupted; {self._saved_message()}")
             return self._finish()
+
+    def _run_rounds(self, display: Progress, stop: threading.Event) -> None:
+        """Run all rounds; WrittenElsewhereError where another process has written the result."""
+        try:
+            ranges = self._rounds.begin()
+            while ranges:
+                self._round(ranges, display, stop, self._add)
+                ranges = self._rounds.next(self._collector)
+            self._together.await_turn(stop)
+        except StoreError:  # perhaps since all that led to the result is removed
+            self._together.check()
+            raise
 
     def keep(self, ranges: Sequence[RunRange], *, quiet: bool) -> list[str]:
         """Compute some of the runs of the first round, and keep them beside the output; return why runs failed."""
@@ -235,15 +245,11 @@ class Batch:
     def _reused(self, ranges: Sequence[RunRange], display: Progress, take: Sink) -> list[RunRange]:
         """Take those runs that there are by now; return the others."""
         selected: list[tuple[int, int]] = []
-        try:
-            self._together.look(self._reusable)
-            missing = self._beginning.missing(ranges, selected)
-            for result in self._reusable.read(selected):
-                take(result)
-                display.add(reused=result.realizations)
-        except StoreError:  # perhaps because what led to a result is removed
-            self._together.check()
-            raise
+        self._together.look(self._reusable)
+        missing = self._beginning.missing(ranges, selected)
+        for result in self._reusable.read(selected):
+            take(result)
+            display.add(reused=result.realizations)
         if missing:
             self._together.check()
         return missing
@@ -255,7 +261,7 @@ class Batch:
         if len(tasks) > 1:
             self._writer.begin(self._plan.scene.toml, self._command)
             if places := self._collector.places:
-                data = begun_result(self._plan, places, self._variables)
+                data = curves_so_far(self._plan, places, self._variables)
                 self._writer.grow(data, places.diagnostics["status"])
         if not on_cluster:
             prepare_all(self._plan, [runs for task in tasks for runs in task.ranges])

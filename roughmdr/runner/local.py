@@ -83,20 +83,28 @@ class Processes:
 
     def __init__(self, workers: int) -> None:
         self.workers = workers
+        self._context = multiprocessing.get_context("spawn")  # a fork of a process with threads may hang
+        self._group: ProcessGroup | None = None
+
+    def close(self) -> None:
+        """End the processes, and with them their claims: what they computed must be stored before."""
+        if self._group is not None:
+            self._group.end()
+            self._group = None
 
     def compute(self, tasks: Iterable[Task], stop: threading.Event, sink: Sink) -> None:
-        """Compute the tasks in processes; one whose process dies again and again has failed."""
+        """Compute the tasks in processes, which last until they are closed; one whose process dies again and again has
+        failed.
+        """
         from dask.multiprocessing import get
 
-        context = multiprocessing.get_context("spawn")  # a fork of a process with threads may hang
-        halt = context.Event()
-        group = ProcessGroup(self.workers, context, halt)
+        group = self._group = self._group or ProcessGroup(self.workers, self._context)
         waiting: dict[int, Task] = {}
 
         def done(number: int, result: TaskResult) -> None:
             del waiting[number]
             if stop.is_set():
-                halt.set()
+                group.halt.set()
             sink(result)
 
         try:
@@ -112,7 +120,7 @@ class Processes:
                     except BrokenProcessPool:
                         losses += 1
                         group.end()
-                        group = ProcessGroup(self.workers, context, halt)
+                        group = self._group = ProcessGroup(self.workers, self._context)
                         if alone:
                             sink(failed(waiting.pop(first), "the process that computed it died"))
                     else:
@@ -120,20 +128,19 @@ class Processes:
                             waiting.pop(number, None)
         except BaseException:
             stop.set()
+            self.close()
             raise
-        finally:
-            halt.set()
-            group.end()
 
 
 class ProcessGroup:
     """A pool of processes that end with it, and with this process, however that ends."""
 
-    def __init__(self, workers: int, context: SpawnContext, halt: Event) -> None:
+    def __init__(self, workers: int, context: SpawnContext) -> None:
+        self.halt = context.Event()  # set when the batch that they work for is to stop
         if multiprocessing.current_process().daemon:
             raise RoughmdrError("scheduler is 'processes', which cannot run inside a daemonic process")
         for _ in range(_MAX_STARTS):
-            self.pool = ProcessPoolExecutor(workers, context, _start_worker, (halt,))
+            self.pool = ProcessPoolExecutor(workers, context, _start_worker, (self.halt,))
             with _signals_blocked():
                 # Each is started with the first call for which no other is idle.
                 started = [self.pool.submit(int) for _ in range(workers)]
@@ -164,8 +171,7 @@ def over_processes(
     if workers == 1:
         yield from enumerate(map(function, items))
         return
-    context = multiprocessing.get_context("spawn")
-    group = ProcessGroup(workers, context, context.Event())
+    group = ProcessGroup(workers, multiprocessing.get_context("spawn"))
     try:
         futures = {group.pool.submit(function, item): position for position, item in enumerate(items)}
         for future in as_completed(futures):

@@ -8,6 +8,7 @@ from collections.abc import Iterator, Sequence
 from roughmdr.batch.plan import Plan
 from roughmdr.batch.resume.find import find_previous, is_finished
 from roughmdr.batch.resume.reusable import ReusableRows
+from roughmdr.batch.resume.store import CheckpointStore
 from roughmdr.batch.resume.writer import CheckpointWriter
 from roughmdr.batch.tasks import Task
 from roughmdr.errors import StoreError
@@ -30,9 +31,14 @@ class Together:
     def __init__(self, writer: CheckpointWriter, plan: Plan, keys: Sequence[set[str]]) -> None:
         self._writer, self._plan, self._keys = writer, plan, keys
 
+    @property
+    def _store(self) -> CheckpointStore | None:
+        """The folder that other processes may see; None where nothing is kept yet."""
+        return self._writer.store if self._writer.begun else None
+
     def look(self, reusable: ReusableRows) -> None:
         """Add what other processes have stored to ``reusable``."""
-        if self._writer.begun and (store := self._writer.store):
+        if store := self._store:
             store.claims.look()  # before the results themselves: all that it knows to be stored can be read then
             for reader in store.news():
                 reusable.add(reader)
@@ -42,9 +48,9 @@ class Together:
 
         StoreError where it is removed, and no result is there.
         """
-        target, store = self._writer.target, self._writer.store
-        if target is not None and self._writer.begun and store is not None and store.ended:
-            result = find_previous(target)
+        target, store = self._writer.target, self._store
+        if target is not None and store is not None and store.ended:
+            result = find_previous(target, alone=False)
             if result is None or not is_finished(result, self._plan, self._keys):
                 self._writer.flush()
                 raise StoreError(f"{store.folder}: cannot be written: {os.strerror(errno.ENOENT)}")
@@ -55,9 +61,10 @@ class Together:
 
         A task of which runs have failed elsewhere, or are stored merged with others, is computed in any case.
         """
-        store = self._writer.store if self._writer.begun else None
-        for task in tasks:
-            if store is None or store.claims.are_done(task.runs):
+        store = self._store
+        anyway = [store is None or store.claims.are_done(task.runs) for task in tasks]  # before others do more
+        for task, unclaimed in zip(tasks, anyway, strict=True):
+            if store is None or unclaimed:
                 yield task
             elif by_workers:
                 yield task._replace(claimed_in=store.whole_path)
@@ -66,7 +73,7 @@ class Together:
 
     def await_turn(self, stop: threading.Event) -> None:
         """Wait until no other process is about to write the result, or until ``stop`` is set; check whether it has."""
-        if self._writer.begun and (store := self._writer.store):
+        if store := self._store:
             while not store.claims.finish() and not stop.wait(BETWEEN_LOOKS):
                 pass
             self.check()

@@ -59,6 +59,13 @@ WITH_OTHERS = _PUT.format(
         time.sleep(0.01)"""
 )
 """Code that makes a process wait after its second task until another process has stored a result."""
+BEHIND = _PUT.format(
+    wait="""parts = Path("out.nc.parts")
+    while (parts / "manifest.jsonl").exists() and len([*parts.glob("*.npz")]) < 85:
+        assert time.monotonic() < end
+        time.sleep(0.01)"""
+)
+"""Code that makes a process wait until others have stored most of its runs, if each is a task."""
 SLOWLY = _PUT.format(wait="time.sleep(0.1)")
 
 
@@ -93,7 +100,7 @@ def test_two_share_the_runs_of_a_batch(
     write_scene(folder, CURVES if keep == "curves" else STATISTICS)
     with running(Batch(folder, *options, runs_per_task=runs_per_task[0], code=WITH_OTHERS)) as first:
         first.wait_for_lines(1)
-        with running(Batch(folder, runs_per_task=runs_per_task[1], code=SLOWLY)) as second:
+        with running(Batch(folder, *options, runs_per_task=runs_per_task[1], code=SLOWLY)) as second:
             wait_for_others(folder, first, second)
             found = read_kept(folder / "out.nc.parts")
             assert found.holder is not None
@@ -121,6 +128,24 @@ def test_one_that_is_killed_leaves_the_rest_to_the_other(
             assert 0 < other.succeed() < RUNS
     assert_result(folder, curves)
     assert_clean(folder)
+
+
+@pytest.mark.large
+def test_one_that_falls_behind_computes_nothing_twice(folder: Path, curves: xr.Dataset) -> None:
+    """Also where there are more tasks than a pool is given at a time."""
+    options = ("--workers", "1")
+    nearly_all = _PUT.format(
+        wait="""while len(results) > 88 and not Path("../go").exists():
+        assert time.monotonic() < end
+        time.sleep(0.01)"""
+    )
+    with running(Batch(folder, *options, runs_per_task=1, code=WITH_OTHERS + nearly_all)) as first:
+        first.wait_for_lines(1)
+        with running(Batch(folder, *options, runs_per_task=1, code=BEHIND)) as second:
+            count = second.succeed()
+            (folder.parent / "go").touch()
+            assert count + first.succeed() == RUNS
+    assert_result(folder, curves)
 
 
 @pytest.mark.large

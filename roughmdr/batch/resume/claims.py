@@ -1,7 +1,7 @@
 """Claims of the processes that fill one folder of parts together: each run is computed by the one that claims it.
 
 A claim is a lock on bytes of a file, one byte for each run: the system releases it when its process ends, however that
-ends. On a disk without locks every claim is granted, and runs are only computed twice.
+ends. On a disk without locks nobody is kept out: there only parts of a batch may be computed beside each other.
 """
 
 import errno
@@ -28,14 +28,15 @@ class Claims:
 
     def __init__(self, folder: Path) -> None:
         self._file = os.open(folder / CLAIMS, os.O_RDWR | os.O_CREAT | os.O_NOFOLLOW, 0o666)
+        self._folder, self._guard = folder, threading.Lock()
         self._tail, self._done = ManifestTail(folder), dict[str, list[Runs]]()
-        self._guard = threading.Lock()
 
     def look(self) -> None:
         """Read which runs have been stored, or have failed, since the last look."""
-        for line in self._tail.new_lines():
-            for runs in runs_of(line) or ():
-                self._done.setdefault(runs.key, []).append(runs)
+        with convert_os_errors(self._folder):
+            for line in self._tail.new_lines():
+                for runs in runs_of(line) or ():
+                    self._done.setdefault(runs.key, []).append(runs)
 
     def are_done(self, ranges: Iterable[Runs]) -> bool:
         """Return whether any of the runs was stored, or had failed, at the last look."""
@@ -47,7 +48,7 @@ class Claims:
 
     def take(self, ranges: Iterable[Runs]) -> bool:
         """Claim runs, all or none; return whether they are this process's to compute, and not done already."""
-        with self._guard:
+        with self._guard, convert_os_errors(self._folder):
             taken = list[Runs]()
             for runs in ranges:
                 if not self._lock(_place(runs), runs.last - runs.first):

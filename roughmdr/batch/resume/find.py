@@ -26,9 +26,12 @@ _AT_ONCE = 2**20  # most numbers of a variable that are copied at a time, 8 MB
 _REMEDY = "give another output, or --fresh (resume=False) to replace it"
 
 
-def find_previous(target: Path) -> Labelled | None:
-    """Return the result at ``target``, None where no file is; StoreError where it is no result, or was changed."""
-    if not target.exists() and is_zarr(before_of(target)):  # a run was killed while it replaced it
+def find_previous(target: Path, *, alone: bool = True) -> Labelled | None:
+    """Return the result at ``target``, None where no file is; StoreError where it is no result, or was changed.
+
+    Without other processes at work, ``alone``, a store that was being replaced by a killed one is put back.
+    """
+    if alone and not target.exists() and is_zarr(before_of(target)):
         before_of(target).rename(target)
     if not target.exists():
         return None

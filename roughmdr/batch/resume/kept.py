@@ -13,7 +13,7 @@ from typing import NamedTuple
 from roughmdr.batch.plan import Plan, make_plan
 from roughmdr.batch.resume.keys import versions
 from roughmdr.batch.resume.lock import LOCK
-from roughmdr.batch.resume.manifest import MANIFEST, manifest_lines, runs_of
+from roughmdr.batch.resume.manifest import MANIFEST, Runs, manifest_lines, runs_of
 from roughmdr.batch.resume.share import Share
 from roughmdr.batch.rounds import Rounds
 from roughmdr.errors import RoughmdrError, StoreError
@@ -112,7 +112,7 @@ def read_kept(folder: Path) -> Kept:
     holder, known = _holder(folder)
     if not content and not (folder / LOCK).exists():
         raise StoreError(f"{folder}: holds no runs; if a batch was at work here it has ended, see {folder.stem}")
-    batch, runs, by_key, files = dict[str, str](), 0, Counter[str](), list[StoredFile]()
+    batch, runs, of_cells, files = dict[str, str](), 0, dict[str, list[Runs]](), list[StoredFile]()
     failed, remark, counted, complete = set[tuple[str, int]](), "", True, False
     for line in manifest_lines(content):
         match line:
@@ -126,16 +126,25 @@ def read_kept(folder: Path) -> Kept:
                 runs += count
                 of_file = runs_of(line)
                 counted &= of_file is not None
-                for key, first, end in of_file or ():
-                    by_key[key] += end - first
+                for each in of_file or ():
+                    of_cells.setdefault(each.key, []).append(each)
                 files.append(StoredFile(file, str(line.get("sha256")), frozenset(key for key, *_ in of_file or ())))
             case {"failed": list(), "remark": str(why)}:
                 failed |= {(key, run) for key, run, _ in runs_of(line) or ()}
                 remark = remark or why
     scene, made_with, command, began = (batch.get(name, "") for name in ("scene", "versions", "command", "began"))
-    kept_by_key = by_key if counted else None
+    kept_by_key = Counter({key: _count(stored) for key, stored in of_cells.items()}) if counted else None
+    runs = kept_by_key.total() if kept_by_key is not None else runs
     told = scene, made_with, command, began, last, runs, kept_by_key, tuple(files), frozenset(failed), remark, complete
     return Kept(folder, *told, holder, known)
+
+
+def _count(stored: list[Runs]) -> int:
+    """Return the number of runs of a cell; two processes may have stored the same."""
+    count = end = 0
+    for _, first, last in sorted(stored):
+        count, end = count + max(0, last - max(first, end)), max(end, last)
+    return count
 
 
 def progress_of(kept: Kept) -> Progress:

@@ -66,13 +66,14 @@ def acquire_lock(folder: Path, target: Path, joins: BatchName | None) -> FolderL
             continue
         try:
             alone = _flock(file)
-            begun = _batch_in(folder)
-            may_join = joins is not None and begun in (None, joins) and _identity(file) not in _held_here
-            if alone or (may_join and begun is not None and _flock(file, shared=True)):
+            may_join = not alone and joins is not None and _identity(file) not in _held_here
+            shared = may_join and _flock(file, shared=True)
+            begun = _batch_in(folder) if may_join else None
+            if alone or (shared and begun == joins):
                 with suppress(FileNotFoundError):
                     if os.path.samestat(os.fstat(file), os.stat(folder / LOCK)):
                         return FolderLock(os.dup(file), alone=alone)
-            elif not may_join or time.monotonic() > deadline:
+            elif not may_join or begun not in (None, joins) or time.monotonic() > deadline:
                 holder = os.read(file, 200).decode(errors="replace").partition("\n")[0].strip()
                 raise StoreError(f"{target}: another run is writing it{holder and f' ({holder})'}")
             else:

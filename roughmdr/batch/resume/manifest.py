@@ -37,7 +37,7 @@ def runs_of(line: dict[str, Any]) -> list[Runs] | None:
             pass
         case _:
             return None
-    return [Runs(*each) for each in given] if all(map(_is_range, given)) else None
+    return [Runs(*each) for each in given] if all(_is_range(each) and len(each) == 3 for each in given) else None
 
 
 def _is_range(given: object) -> bool:

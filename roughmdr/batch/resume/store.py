@@ -68,7 +68,7 @@ class CheckpointStore:
         self._has_failed = False
         self._tail, self._own = ManifestTail(folder), set[str]()
         if self.alone:
-            self._cut_manifest()
+            self._check_manifest()
         self._lines = self._new_lines()
         self._next = 1 + max((int(line["file"][:-4]) for line in self._lines), default=0)
         if not self.alone:
@@ -109,9 +109,9 @@ class CheckpointStore:
             self._append({**decisive, "command": command, "began": began})
         if self.alone:
             self.claims.look()  # what is stored already, but cannot be used, is computed again
-        own = (self.scene, self.versions) == (scene, versions)  # else it has begun as another, with fewer runs perhaps
-        if self._lock is not None and self._lock.alone and own and not self._of_share:
-            self._lock.share()
+            same = (self.scene, self.versions) == (scene, versions)  # else it has begun with fewer runs perhaps
+            if self._lock is not None and same and not self._of_share:
+                self._lock.share()
 
     def readers(self) -> Iterator[Callable[[], TaskResult | None]]:
         """Yield a function for each task result that reads it; it returns None for one that is damaged."""
@@ -164,14 +164,11 @@ class CheckpointStore:
         self.scene, self.replaces, self._has_failed, self._lines, self._next = "", "", False, [], 1
         self._tail, self._own = ManifestTail(self.folder), set()
 
-    def _cut_manifest(self) -> None:
-        """Cut off a line of the manifest that was not finished."""
+    def _check_manifest(self) -> None:
+        """Raise StoreError if the manifest is no ordinary file."""
         manifest = self.folder / MANIFEST
         if os.path.lexists(manifest) and not _is_regular(manifest):
             raise StoreError(f"{manifest}: is no ordinary file; remove it")
-        content = manifest.read_bytes() if manifest.exists() else b""
-        if (whole := content.rfind(b"\n") + 1) < len(content):
-            os.truncate(manifest, whole)
 
     def _new_lines(self) -> list[dict[str, Any]]:
         """Return the lines of the manifest about task results that others have stored since the last call."""
@@ -187,11 +184,17 @@ class CheckpointStore:
         return lines
 
     def _append(self, line: dict[str, Any]) -> None:
-        manifest = self.folder / MANIFEST
-        with convert_os_errors(self.folder), self.claims.appending(), manifest.open("ab") as file:
-            before = file.tell()
+        """Append a line: that of a batch to a new manifest, too, any other only where no process has removed it."""
+        manifest, flags = self.folder / MANIFEST, os.O_RDWR | os.O_APPEND | (os.O_CREAT if "scene" in line else 0)
+        with (
+            convert_os_errors(self.folder),
+            self.claims.appending(),
+            os.fdopen(os.open(manifest, flags, 0o666), "r+b") as file,
+        ):
+            before = file.seek(0, os.SEEK_END)
+            cut = before > 0 and os.pread(file.fileno(), 1, before - 1) != b"\n"  # by a process that was killed
             try:
-                file.write(json.dumps(line).encode() + b"\n")
+                file.write(b"\n" * cut + json.dumps(line).encode() + b"\n")
                 file.flush()
                 os.fsync(file.fileno())
             except OSError:
@@ -201,7 +204,11 @@ class CheckpointStore:
 
 
 def _remove(path: Path) -> None:
-    shutil.rmtree(path) if path.is_dir() and not path.is_symlink() else path.unlink()
+    """Remove what another process may be removing as well."""
+    if path.is_dir() and not path.is_symlink():
+        shutil.rmtree(path, ignore_errors=True)
+    else:
+        path.unlink(missing_ok=True)
 
 
 @contextmanager
@@ -213,6 +220,7 @@ def locked_store(target: Path, *, of_share: bool = False, joins: BatchName | Non
     folder = store_folder(target)
     with convert_os_errors(folder):
         lock = acquire_lock(folder, target, joins)
+    store = None
     try:
         with convert_os_errors(folder):
             # Neither whole, nor known to be on the disk.
@@ -220,17 +228,14 @@ def locked_store(target: Path, *, of_share: bool = False, joins: BatchName | Non
                 if _OWN_FILES.fullmatch(path.name):
                     _remove(path)
             store = CheckpointStore(folder, lock, of_share=of_share)
-        try:
-            yield store
-        finally:
-            give_up(store.whole_path)
-            if lock.is_last() and store.removable:
-                shutil.rmtree(folder / SO_FAR, ignore_errors=True)
-                with suppress(OSError):
-                    (folder / MANIFEST).unlink()
+        yield store
     finally:
+        if store is not None:
+            give_up(store.whole_path)
         if lock.is_last():
-            with suppress(OSError):
+            with suppress(OSError, StoreError):
+                if store is not None and (store.ended or store.removable):
+                    store.clear()
                 if {path.name for path in folder.glob("*")} <= {LOCK, CLAIMS}:
                     (folder / CLAIMS).unlink(missing_ok=True)
                     (folder / LOCK).unlink()
