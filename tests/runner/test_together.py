@@ -35,9 +35,10 @@ from roughmdr.batch.resume.keys import versions
 from roughmdr.batch.resume.manifest import Runs
 from roughmdr.batch.resume.store import CheckpointStore
 from roughmdr.batch.task_result import TaskResult, not_run
-from roughmdr.batch.tasks import RunRange, Task, compute
+from roughmdr.batch.tasks import RunRange, Task, compute, split_into_tasks
 from roughmdr.errors import StoreError
 from roughmdr.runner.batch import begun
+from roughmdr.runner.together import Together
 from roughmdr.scene import read
 from roughmdr.storage.result_file import read_result
 
@@ -59,13 +60,6 @@ WITH_OTHERS = _PUT.format(
         time.sleep(0.01)"""
 )
 """Code that makes a process wait after its second task until another process has stored a result."""
-BEHIND = _PUT.format(
-    wait="""parts = Path("out.nc.parts")
-    while (parts / "manifest.jsonl").exists() and len([*parts.glob("*.npz")]) < 85:
-        assert time.monotonic() < end
-        time.sleep(0.01)"""
-)
-"""Code that makes a process wait until others have stored most of its runs, if each is a task."""
 SLOWLY = _PUT.format(wait="time.sleep(0.1)")
 
 
@@ -128,24 +122,6 @@ def test_one_that_is_killed_leaves_the_rest_to_the_other(
             assert 0 < other.succeed() < RUNS
     assert_result(folder, curves)
     assert_clean(folder)
-
-
-@pytest.mark.large
-def test_one_that_falls_behind_computes_nothing_twice(folder: Path, curves: xr.Dataset) -> None:
-    """Also where there are more tasks than a pool is given at a time."""
-    options = ("--workers", "1")
-    nearly_all = _PUT.format(
-        wait="""while len(results) > 88 and not Path("../go").exists():
-        assert time.monotonic() < end
-        time.sleep(0.01)"""
-    )
-    with running(Batch(folder, *options, runs_per_task=1, code=WITH_OTHERS + nearly_all)) as first:
-        first.wait_for_lines(1)
-        with running(Batch(folder, *options, runs_per_task=1, code=BEHIND)) as second:
-            count = second.succeed()
-            (folder.parent / "go").touch()
-            assert count + first.succeed() == RUNS
-    assert_result(folder, curves)
 
 
 @pytest.mark.large
@@ -225,6 +201,26 @@ def test_a_process_does_not_join_itself(folder: Path) -> None:
         beginning.writer.begin(plan.scene.toml, "")
         with pytest.raises(StoreError, match="another run is writing it"), begun(plan, folder / "out.nc", resume=True):
             pass
+
+
+def test_tasks_that_another_stores_meanwhile_are_still_claimed(tmp_path: Path) -> None:
+    """Only runs that were stored before, and could not be used, are computed in any case."""
+    plan = make_plan(read(scene(batch={"realizations": 8})))
+    with begun(plan, tmp_path / "out.nc", resume=True) as beginning:
+        store = beginning.writer.store
+        assert store is not None
+        tasks = split_into_tasks(plan, beginning.rounds.begin(), ("force",), 1, 1)
+        beginning.writer.begin(plan.scene.toml, "")
+        results = [compute(tasks[number]) for number in (0, 5)]
+        assert results[0] is not None
+        assert results[1] is not None
+        store.write(results[0])
+        store.claims.look()
+        claimed = Together(beginning.writer, plan, beginning.rounds.keys).claimed(tasks, by_workers=True)
+        assert next(claimed).claimed_in is None
+        store.write(results[1])
+        store.claims.look()
+        assert [task.claimed_in for task in claimed] == [store.whole_path] * 7
 
 
 # Claims
