@@ -32,7 +32,7 @@ from roughmdr.batch.plan import make_plan
 from roughmdr.batch.resume.claims import claims_in, give_up
 from roughmdr.batch.resume.kept import read_kept
 from roughmdr.batch.resume.keys import versions
-from roughmdr.batch.resume.manifest import Runs
+from roughmdr.batch.resume.manifest import MANIFEST, Runs
 from roughmdr.batch.resume.store import CheckpointStore
 from roughmdr.batch.task_result import TaskResult, not_run
 from roughmdr.batch.tasks import RunRange, Task, compute, split_into_tasks
@@ -249,7 +249,7 @@ _CLAIM = """
 import sys
 from pathlib import Path
 from roughmdr.batch.resume.claims import claims_in
-from roughmdr.batch.resume.manifest import Runs
+from roughmdr.batch.resume.manifest import MANIFEST, Runs
 claims = claims_in(Path(sys.argv[1]))
 print(*(claims.take([Runs("a", 10 * i, 10 * i + 10)]) for i in range(3)), claims.finish(), flush=True)
 sys.stdin.read()
@@ -275,18 +275,53 @@ def test_claims_last_as_long_as_their_process(tmp_path: Path) -> None:
     give_up(tmp_path)
 
 
-def test_runs_that_are_stored_are_not_claimed(tmp_path: Path) -> None:
-    store, claims = CheckpointStore(tmp_path), claims_in(tmp_path)
+@pytest.fixture
+def stored(tmp_path: Path) -> tuple[CheckpointStore, TaskResult]:
+    """The folder of a batch, and a result of three runs that is to be kept there."""
+    store = CheckpointStore(tmp_path / "out.nc.parts")
+    store.folder.mkdir()
     store.begin("scene", "versions", "", "")
-    key = "k"
-    assert claims.take([Runs(key, 0, 3)])
     cell = make_plan(read(scene())).cells[0]
-    task = Task((RunRange(key, cell, "sampled", 0, 3),), ("force",), False, versions(), tmp_path)
-    result = compute(task)
+    result = compute(Task((RunRange("a", cell, "sampled", 0, 3),), ("force",), False, versions(), store.whole_path))
     assert result is not None
+    assert result.runs == [("a", 0, 3)]
+    return store, result
+
+
+def test_runs_that_are_stored_are_not_claimed(stored: tuple[CheckpointStore, TaskResult]) -> None:
+    store, result = stored
     store.write(result)
-    assert result.runs == [(key, 0, 3)]
-    assert compute(task) is None
-    assert not claims.take([Runs(key, 2, 5)])
-    assert claims.take([Runs(key, 3, 5), Runs("other", 0, 3)])
-    give_up(tmp_path)
+    for runs, free in ((Runs("a", 0, 3), False), (Runs("a", 2, 5), False), (Runs("a", 3, 5), True)):
+        assert store.claims.take([runs, Runs("b", 0, 3)]) == free
+    give_up(store.whole_path)
+
+
+def test_runs_that_two_processes_stored_count_once(stored: tuple[CheckpointStore, TaskResult]) -> None:
+    store, result = stored
+    for rows in ([0, 1, 2], [1, 2], [0]):
+        store.write(result.select_rows(np.array(rows)))
+    found = read_kept(store.folder)
+    assert (found.runs, found.by_key) == (3, {"a": 3})
+    give_up(store.whole_path)
+
+
+def test_half_a_line_of_a_process_that_was_killed_spoils_no_other(stored: tuple[CheckpointStore, TaskResult]) -> None:
+    store, result = stored
+    with (store.folder / MANIFEST).open("ab") as manifest:
+        manifest.write(b'{"file": "0000')
+    store.write(result)
+    (again,) = (reader() for reader in CheckpointStore(store.folder).readers())
+    assert again is not None
+    assert again.runs == result.runs
+    give_up(store.whole_path)
+
+
+def test_nothing_is_kept_once_another_has_ended_the_batch(stored: tuple[CheckpointStore, TaskResult]) -> None:
+    store, result = stored
+    store.clear()
+    assert store.ended
+    with pytest.raises(StoreError, match="cannot be written"):
+        store.write(result)
+    assert store.ended
+    assert not store.claims.take([Runs("a", 7, 8)])
+    give_up(store.whole_path)
