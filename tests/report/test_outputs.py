@@ -106,7 +106,7 @@ def test_a_link_and_what_it_leads_to_have_one_lock(folder: Path, curves: xr.Data
         while len([*parts.glob("*.npz")]) < 2:  # the manifest speaks of the first before there is a second
             assert first.process.poll() is None
         os.kill(first.pid, signal.SIGSTOP)
-        for options in ([], ["--fresh"]):
+        for options in (["--set", "seed=77"], ["--fresh"]):
             done = roughmdr("run", "scene.toml", "-o", "scratch/real.nc", *options, cwd=folder)
             assert done.returncode == 2
             assert "another run is writing it" in done.stderr
