@@ -233,7 +233,7 @@ class ResultView:
             known = self.done if "step" in array.dims else np.isfinite(array.values)
             if known.all() or "step" not in array.dims:
                 self._means[name] = mean_and_error(array.values, known)
-            else:  # what is known of each cell is copied
+            else:  # known values of each cell are copied
                 blocks = step_blocks(known.shape[-1], self.sizes["step"])
                 parts = [mean_and_error(array.values[..., block], known) for block in blocks]
                 mean, error = (np.concatenate(each, axis=-1) for each in zip(*parts, strict=True))

@@ -124,7 +124,7 @@ class Processes:
                         if alone:
                             sink(failed(waiting.pop(first), "the process that computed it died"))
                     else:
-                        for number in selected:  # those without a result are left to other processes
+                        for number in selected:  # tasks without a result are left to other processes
                             waiting.pop(number, None)
         except BaseException:
             stop.set()

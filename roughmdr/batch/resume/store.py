@@ -97,7 +97,7 @@ class CheckpointStore:
     @property
     def removable(self) -> bool:
         """Whether the folder tells nothing that is needed: of a share also which runs failed."""
-        self._lines += self._new_lines()  # of another process that ended before its time
+        self._lines += self._new_lines()  # another process may have stored more, and ended
         return self.empty and not (self._of_share and self._has_failed)
 
     def begin(self, scene: str, versions: str, replaces: str, command: str) -> None:
@@ -108,7 +108,7 @@ class CheckpointStore:
             decisive = {"scene": scene, "versions": versions, "replaces": replaces}
             self._append({**decisive, "command": command, "began": began})
         if self.alone:
-            self.claims.look()  # what is stored already, but cannot be used, is computed again
+            self.claims.look()  # runs that are stored, but cannot be used, are computed again
             same = (self.scene, self.versions) == (scene, versions)  # else it has begun with fewer runs perhaps
             if self._lock is not None and same and not self._of_share:
                 self._lock.share()
