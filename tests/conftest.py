@@ -19,7 +19,18 @@ from numba.core.event import Listener, register
 import roughmdr as rm
 from roughmdr.shapes import SHAPES, Shape
 
-COMPILING = ("aggregate", "asperity", "batch", "expected", "interaction", "kernels", "shapes", "springs")
+COMPILING = (
+    "aggregate",
+    "asperity",
+    "batch",
+    "expected",
+    "interaction",
+    "kernels",
+    "model_error",
+    "shapes",
+    "springs",
+    "stages",
+)
 """Folders whose tests compile functions of the shapes that they name."""
 _PARTS = re.compile("|".join(sorted(SHAPES, key=len, reverse=True)))
 
@@ -98,9 +109,12 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
         for item in _all_but_few(cases, cases[0].get_closest_marker("few").args[0], random.Random(name)):
             item.add_marker("large")
     for item in [] if numba.config.DISABLE_JIT else items:
-        if item.path.relative_to(Path(__file__).parent).parts[0] in COMPILING and isinstance(item, pytest.Function):
+        folder = item.path.relative_to(Path(__file__).parent).parts[0]
+        if folder in COMPILING and isinstance(item, pytest.Function):
             given = item.callspec.params.values() if hasattr(item, "callspec") else ()
-            if not _shapes_in([item.path.stem, item.name, *given]) <= COMPILED:
+            named = [item.path.stem, item.name, *given]
+            closed = folder == "interaction" or re.search("dugdale|cohesive", str(named))
+            if not _shapes_in(named) <= ({"paraboloid"} if closed else COMPILED):
                 item.add_marker("large")
 
 

@@ -7,8 +7,9 @@ import numba
 import pytest
 from _pytest.mark import ParameterSet
 
-COMPILED = {"paraboloid", "sphere", "truncated_cone", "tabulated"}
-"""Shapes whose tests are no long forms where functions are compiled; those of the others run uncompiled instead."""
+COMPILED = {"paraboloid", "sphere"}
+"""Shapes whose tests are no long forms where functions are compiled: kernels in closed form, and those of a profile.
+Tests of the others run uncompiled instead. Of adhesion of finite range and of pairs, paraboloids alone are compiled."""
 
 
 def large(*values: object) -> ParameterSet:

@@ -37,6 +37,7 @@ def test_run_and_plot(small: Path) -> None:
     assert (small / "a.png").read_bytes().startswith(b"\x89PNG")
 
 
+@pytest.mark.large
 def test_a_folder_beside_the_clone_does_not_hide_the_package(tmp_path: Path) -> None:
     """Python takes a folder called as the package for a package of its own unless it finds a real one."""
     (tmp_path / "roughmdr").mkdir()
@@ -106,6 +107,7 @@ def test_a_picture_of_what_is_not_there(small: Path) -> None:
     assert sorted(path.name for path in small.iterdir()) == ["out.nc", "small.toml"]
 
 
+@pytest.mark.large
 def test_a_picture_of_a_crooked_path_with_an_odd_title(small: Path) -> None:
     crooked = [
         "--set",
@@ -135,6 +137,7 @@ main()
 """
 
 
+@pytest.mark.large
 def test_an_interrupt_is_exit_status_130_and_leaves_nothing(small: Path) -> None:
     command = [sys.executable, "-c", _INTERRUPTED_IN_THE_FIRST_TASK, "run", "small.toml", "-o", "out.nc"]
     done = subprocess.run(command, cwd=small, capture_output=True, text=True, timeout=60, check=False)

@@ -159,6 +159,7 @@ assert "contacts that a treatment stiffens" in told("plot", "out.nc", "-o", "out
 """
 
 
+@pytest.mark.large
 @pytest.mark.parametrize(
     ("section", "code"),
     [large("adhesion model", _DMT), large("curve variable", _PERIMETER), ("section", _STIFFENING)],

@@ -58,6 +58,7 @@ def test_the_starter_scene_runs_and_shows_every_choice(tmp_path: Path) -> None:
     assert "exists already" in again.stderr
 
 
+@pytest.mark.large
 def test_every_choice_that_the_starter_scene_leaves_out_is_right() -> None:
     text = (Path(rm.__file__).parent / "starter.toml").read_text()
     sweep = text[text.index("# [sweep]") :].replace("\n# ", "\n").removeprefix("# ")
@@ -176,6 +177,7 @@ def on_a_terminal(*arguments: str, cwd: Path, **environment: str) -> str:
     return shown.decode()
 
 
+@pytest.mark.large
 def test_messages_are_in_colour_on_a_terminal_and_plain_elsewhere(folder: Path) -> None:
     wrong: dict[str, Any] = scene(asperities={**ASPERITIES, "hieght": 1}, adhesion={"model": "jkr", "work": "5 m"})
     (folder / "wrong.toml").write_text(tomli_w.dumps(wrong))

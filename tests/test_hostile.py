@@ -161,6 +161,7 @@ def test_a_run_that_cannot_be_computed_says_which() -> None:
         rm.run(alone)
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize(
     "content",
     [
@@ -211,6 +212,7 @@ def test_a_result_that_was_changed_is_refused_or_shown(folder: Path, change: str
         assert "not a result as roughmdr writes it" in done.output
 
 
+@pytest.mark.large
 def test_a_result_with_more_in_it_is_shown(folder: Path) -> None:
     result = rm.run(folder / "small.toml")
     result.assign(foo=2.0 * result.force).to_netcdf(folder / "more.nc")
@@ -268,6 +270,7 @@ def test_a_plan_is_not_disturbed_by_files_in_the_folder(folder: Path) -> None:
     assert done.returncode == 0, done.stderr
 
 
+@pytest.mark.large
 def test_a_huge_batch_is_planned_at_once() -> None:
     huge = {"batch": {"realizations": 1_000_000_000}, "output": {"keep": "statistics"}}
     plan = make_plan(read(scene(**huge, asperities={**ASPERITIES, "count": 1})))

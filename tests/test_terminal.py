@@ -41,7 +41,7 @@ def odd(content: Content) -> None:
     content.variables["odd\x9b\u202e"] = Variable((), np.array(1.0), {"units": TEXT})
 
 
-@pytest.mark.few(4)
+@pytest.mark.few(1)
 @pytest.mark.parametrize("name", [*RESULTS, "ensemble", "table", "map"])
 @pytest.mark.parametrize("failed", [False, True])
 def test_nothing_in_a_file_reaches_a_terminal(folder: Path, name: str, failed: bool) -> None:
@@ -63,7 +63,7 @@ def test_nothing_in_a_file_reaches_a_terminal(folder: Path, name: str, failed: b
         assert "\\x1b[31m" in "".join(done.output for done in said)
 
 
-@pytest.mark.few(2)
+@pytest.mark.large
 @pytest.mark.parametrize(
     ("name", "every"),
     [
@@ -184,12 +184,14 @@ def test_a_full_disk_behind_the_output_is_told_in_one_line(folder: Path, argumen
     assert [said in line for line in done.stderr.splitlines()] == [True]
 
 
+@pytest.mark.large
 def test_letters_that_an_output_lacks_are_spelt(folder: Path) -> None:
     environment = {**os.environ, "PYTHONIOENCODING": "ascii"}
     done = command("info", "curves.nc", cwd=folder, stdout=subprocess.PIPE, env=environment)
     assert (done.returncode, "\\xb1" in done.stdout) == (0, True), done.stderr
 
 
+@pytest.mark.large
 def test_the_end_of_the_memory_is_told_in_one_line(folder: Path) -> None:
     limited = ["sh", "-c", 'ulimit -v 4000000; exec "$@"', "sh", *ROUGHMDR]
     asked = ["generate", "curves.toml", "-o", "huge.nc", "--set", "asperities.count=1000000000"]

@@ -72,7 +72,7 @@ def check_parts(
     return whole
 
 
-@pytest.mark.few(8)
+@pytest.mark.few(1)
 @pytest.mark.filterwarnings("ignore::UserWarning")
 @pytest.mark.parametrize("control", CONTROLS)
 @pytest.mark.parametrize("coupling", COUPLINGS)
@@ -86,14 +86,14 @@ def test_without_adhesion(coupling: str, control: str) -> None:
 @pytest.mark.few(2)
 @pytest.mark.filterwarnings("ignore::UserWarning")
 @pytest.mark.parametrize("control", CONTROLS)
-@pytest.mark.parametrize("adhesion", ["jkr", "dugdale"])
+@pytest.mark.parametrize("adhesion", ["jkr", large("dugdale")])
 def test_independent_with_adhesion(adhesion: str, control: str) -> None:
     rng = np.random.default_rng([2, CONTROLS.index(control)])
     given = {"work": WORK, "adhesion": adhesion} | ({"strength": 2e6} if adhesion == "dugdale" else {})
     check_parts(placed(rng, 10, SIDE), control, walk(rng, control, adhesive=True), rng, **given)
 
 
-@pytest.mark.few(2)
+@pytest.mark.large
 @pytest.mark.filterwarnings("ignore::UserWarning")
 @pytest.mark.parametrize("control", CONTROLS)
 @pytest.mark.parametrize("order", [large(1), 2])
@@ -130,6 +130,7 @@ def test_other_shapes(shape: str, work: float, interaction: dict[str, Any] | Non
     check_parts(placed(rng, 8, 8e-6, shape), "separation", values, rng, work=work, interaction=interaction)
 
 
+@pytest.mark.large
 @pytest.mark.filterwarnings("ignore::UserWarning")
 @pytest.mark.parametrize("interaction", [None, PERIODIC], ids=["independent", "pairs"])
 def test_the_way_to_a_preload_knows_nothing_of_the_way_back(interaction: dict[str, Any] | None) -> None:

@@ -54,6 +54,7 @@ def test_the_same_bits_for_any_workers_and_tasks(
         assert_same(found.load(), base)
 
 
+@pytest.mark.large
 def test_a_run_says_how_many_contacts_overlap(base: xr.Dataset) -> None:
     assert (base.marked_steps == 0).all()
     assert (base.overlap_count >= 0).all()
@@ -71,7 +72,7 @@ def test_coupled_asperities_carry_more_on_a_periodic_patch_and_less_on_a_free_on
     assert force["free"] < force["none"]
 
 
-@pytest.mark.few(1)
+@pytest.mark.large
 @pytest.mark.parametrize("keep", ["curves", "statistics"])
 def test_a_step_without_equilibrium_is_marked(keep: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Here for want of iterations: the first contacts, which are few, are found; the last ones are not."""
@@ -111,6 +112,7 @@ print("loaded:", *sorted(sys.modules))
 """
 
 
+@pytest.mark.large
 @pytest.mark.parametrize("interaction", [None, large(PAIRWISE)])
 def test_without_interaction_nothing_of_it_is_imported(tmp_path: Path, interaction: dict[str, Any] | None) -> None:
     table = coupled(interaction=interaction, batch=None)
@@ -170,6 +172,7 @@ def overlapping(length: float) -> dict[str, Any]:
     )
 
 
+@pytest.mark.large
 @pytest.mark.parametrize("length", [1e-9, 1.0])
 def test_contacts_that_make_and_lose_each_other_without_end_are_lost(
     length: float, monkeypatch: pytest.MonkeyPatch
@@ -185,6 +188,7 @@ def test_contacts_that_make_and_lose_each_other_without_end_are_lost(
     assert len(count) < 5 * 20  # and not 10 for each asperity in each of the last avalanches
 
 
+@pytest.mark.large
 def test_a_plan_says_where_no_equilibrium_is_found(tmp_path: Path) -> None:
     (tmp_path / "scene.toml").write_text(tomli_w.dumps(overlapping(1.0)))
     told = roughmdr("plan", str(tmp_path / "scene.toml")).stdout

@@ -61,7 +61,7 @@ class Walk:
         return float(self.force[self.at]) if self.at >= 0 else 0.0
 
 
-@pytest.mark.few(2)
+@pytest.mark.large
 @pytest.mark.parametrize("tabor", [0.1, 0.6, 1.5, 20.0])
 def test_a_winding_path_is_that_of_the_plain_walk(tabor: float) -> None:
     rng = np.random.default_rng(5)
@@ -118,7 +118,7 @@ SHAPES = {
 KINDS = ["paraboloid", "flat_punch", "truncated_cone", pytest.param("rounded_punch", marks=pytest.mark.large)]
 
 
-@pytest.mark.few(1)
+@pytest.mark.large
 @pytest.mark.parametrize("kind", KINDS)
 def test_the_work_of_a_closed_cycle_is_what_the_jumps_dissipate(kind: str) -> None:
     shape, numbers = SHAPES[kind]
@@ -143,6 +143,7 @@ def test_the_work_of_a_closed_cycle_is_what_the_jumps_dissipate(kind: str) -> No
         assert np.median(np.abs(moved - done)) < 1e-6 * scale
 
 
+@pytest.mark.large
 @pytest.mark.parametrize("reach", [large(1e-6), large(0.1), 1e10, large(1e20)])
 def test_a_range_in_which_a_contact_would_be_lost_is_refused(reach: float) -> None:
     """Else the force of a punch, P/(2 E*) = b delta - beta/2 (a m + b^2 theta), is right to the stated error."""

@@ -42,7 +42,7 @@ def law_and_contacts(
     return law, contacts_at(problem, separation, step)
 
 
-@pytest.mark.few(3)
+@pytest.mark.few(1)
 @pytest.mark.parametrize(
     ("adhesion", "interaction", "asperities"),
     [

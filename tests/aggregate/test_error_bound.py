@@ -176,6 +176,7 @@ def test_a_steep_series_without_adhesion_is_found_to_the_last_digit_of_its_value
         assert abs(float(contact.force) / exact.force(t) - 1) < 400 * 2.0**-53
 
 
+@pytest.mark.large
 @pytest.mark.parametrize("exponent", [0.51, 0.52, 0.55, 0.6, 0.7, 0.76, 0.8])
 def test_the_bound_asks_nothing_of_how_the_stiffness_goes(exponent: float) -> None:
     """Below n = 0.768 k falls along a part of the branch; where k or P is 0, their terms are not."""
@@ -201,6 +202,7 @@ def test_the_bound_asks_nothing_of_how_the_stiffness_goes(exponent: float) -> No
         assert total[totals.ERROR, -1] > 0.0
 
 
+@pytest.mark.large
 def test_the_stated_error_of_a_sum_of_unlike_asperities_holds() -> None:
     rng = np.random.default_rng(37)
     for _ in range(20):

@@ -131,7 +131,7 @@ def compare(height, radius, modulus, work, stiffness, controls) -> None:
     )
 
 
-@pytest.mark.few(1)
+@pytest.mark.large
 @pytest.mark.parametrize("ratio", [0.0, large(0.02), 0.5, large(20.0)])
 @pytest.mark.parametrize("height", [large([0.0, 0.0]), [0.0, -0.3], [0.2, 0.0, -1.5]])
 def test_two_and_three_contacts_on_nested_loops(height, ratio) -> None:
@@ -220,7 +220,7 @@ def test_after_a_nested_loop_all_is_as_before() -> None:
         assert found[name].values[-1] == pytest.approx(found[name].values[-3], rel=1e-12)
 
 
-@pytest.mark.parametrize("kind", ["paraboloid", "cone", "sphere", "power_law"])
+@pytest.mark.parametrize("kind", ["paraboloid", "cone", large("sphere"), "power_law"])
 @pytest.mark.parametrize("scale", [1.0, 1e-7])
 def test_the_separation_at_a_force_is_the_inverse_of_the_force_at_a_separation(kind, scale) -> None:
     parameters = {
@@ -314,6 +314,7 @@ def test_a_preload_without_a_spring_is_the_path_of_those_separations() -> None:
         np.testing.assert_array_equal(found[name], same[name])
 
 
+@pytest.mark.large
 @pytest.mark.skipif(numba.config.DISABLE_JIT, reason="it takes minutes")
 @pytest.mark.parametrize("model", ["pairwise", "mean_field"])
 def test_asperities_that_feel_each_other_are_loaded_to_the_same_preload(model) -> None:

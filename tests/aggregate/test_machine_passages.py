@@ -46,6 +46,7 @@ def controls(data: xr.Dataset, dead: bool, material: dict) -> tuple[np.ndarray, 
     return np.array(turns), {"machine_stiffness": stiffness}
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("dead", [True, False])
 @pytest.mark.parametrize(
     ("kind", "adhesion"),

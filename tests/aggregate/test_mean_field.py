@@ -54,6 +54,7 @@ def test_a_long_strip_has_no_cancellation() -> None:
     assert thin[1] - thin[0] == pytest.approx(2.0 * math.log(1e4), rel=1e-7)
 
 
+@pytest.mark.large
 def test_the_constant_of_the_hexagonal_lattice_is_its_ewald_sum() -> None:
     """A patch of n x m cells of two sites, nearly square: the square's sum converges to that of the lattice."""
     for rows, columns in ((8, 7), (22, 19)):
@@ -187,6 +188,7 @@ def test_where_the_contacts_are_stiffer_than_the_surface_there_is_no_equilibrium
         rm.load_separation(crowded, separation=-1e-7, effective_modulus=E, interaction="mean_field")
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("boundary", ["free", "periodic"])
 def test_the_expected_law_is_the_mean_of_many_large_realisations(boundary: str) -> None:
     """The mean field is that of the force of all: of large ensembles, whose forces hardly differ, both are one law."""

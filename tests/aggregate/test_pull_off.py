@@ -99,6 +99,7 @@ def test_of_one_paraboloid_it_is_that_of_jkr() -> None:
         assert float(curve.pull_off_force) == pytest.approx(float(exact.force), rel=1e-7)
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("count", [1, 6, 40])
 def test_of_several_unloadings_it_is_the_largest(count: int) -> None:
     law: dict[str, Any] = {"effective_modulus": E, "work": W}

@@ -128,6 +128,7 @@ def pressed(ensemble: xr.Dataset, h: float) -> Floats:
     return np.array([law.force.values[-1], law.sampling_error, law.effective_contacts])
 
 
+@pytest.mark.large
 def test_of_patches_with_clusters_it_is_the_scatter_which_the_number_of_contacts_misses() -> None:
     found = [pressed(clusters(0.03, seed), 0.0) for seed in range(80)]
     force, error, number = np.transpose(found)
@@ -137,6 +138,7 @@ def test_of_patches_with_clusters_it_is_the_scatter_which_the_number_of_contacts
     assert np.median(number**-0.5) < 0.65 * true
 
 
+@pytest.mark.large
 def test_a_mean_field_evens_out_the_force_of_a_patch() -> None:
     """The mean field is as a spring in series with each asperity: more force moves all away."""
     section = {"source": "random", "shape": "paraboloid", "count": 300, "patch": "1 mm", "radius": "50 um"}

@@ -91,6 +91,7 @@ def test_contacts_with_several_branches_on_a_winding_path(case: str) -> None:
         assert near.mean() > 0.95, (omega, law.contact_radius_sum.values, expected)
 
 
+@pytest.mark.few(1)
 @pytest.mark.skipif(numba.config.DISABLE_JIT, reason="22 000 steps take a minute")
 @pytest.mark.parametrize("case", BRANCHED)
 def test_their_energy_balance_closes(case: str) -> None:
@@ -113,6 +114,7 @@ def test_their_energy_balance_closes(case: str) -> None:
         assert (np.diff(law.dissipated_energy) >= 0.0).all()
 
 
+@large_where_compiled
 @pytest.mark.parametrize("kind", WIDER_SHAPES)
 @pytest.mark.parametrize("work", [0.0, 1e-3])
 def test_the_sum_is_that_of_its_asperities(kind: str, work: float) -> None:

@@ -5,6 +5,7 @@ import gc
 import numpy as np
 import pytest
 import xarray as xr
+from forms import large_where_compiled
 from hypothesis import given, settings, strategies as st
 from numba.core.dispatcher import Dispatcher
 from scenes import ensemble
@@ -255,6 +256,7 @@ def test_an_ensemble_may_come_in_other_units() -> None:
     assert float(laws[0].force[0]) == pytest.approx(float(laws[1].force[0]), rel=1e-14)
 
 
+@large_where_compiled
 def test_an_attraction_that_reaches_around_a_sphere_is_refused() -> None:
     """No contact of it has a natural depth, compiled or not."""
     sphere = ensemble([1e-6], shape="sphere", radius=2e-5)

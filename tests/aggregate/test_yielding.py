@@ -37,6 +37,7 @@ def onset(radius: float, modulus: float, hardness: float) -> float:
     return radius * (3.0 * math.pi * hardness / (4.0 * modulus)) ** 2
 
 
+@pytest.mark.large
 @given(DECADES, DECADES, st.floats(-4.0, 0.0))
 @settings(deadline=None)
 def test_a_sphere_is_above_the_hardness_from_its_onset_on(length: float, stress: float, relative: float) -> None:

@@ -52,6 +52,7 @@ assert xarray.__spec__.loader is xarray.__loader__
 """
 
 
+@pytest.mark.large
 @pytest.mark.parametrize(
     "order",
     [_LATER, _FIRST, *map(large, [_AGAIN, _THREADS, _LOOKED_FOR, _FAILED])],

@@ -64,6 +64,7 @@ def test_statistics_are_those_that_a_run_stores(curves: xr.Dataset, statistics: 
     assert rm.info(found).splitlines()[0] == rm.info(statistics).splitlines()[0]
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize(
     "changes",
     [
@@ -140,6 +141,7 @@ def test_what_is_no_result_is_refused(method: str) -> None:
         getattr(asperities.roughmdr, method)(*_METHODS[method])
 
 
+@pytest.mark.large
 def test_every_variable_has_its_unit_and_its_name(curves: xr.Dataset) -> None:
     arguments = _METHODS | {"at_force": (1e-4,), "normalise": ("gw",)}
     for method in sorted(_METHODS.keys() - {"plot"}):

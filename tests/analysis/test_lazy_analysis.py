@@ -43,7 +43,7 @@ def opened(curves: xr.Dataset, tmp_path_factory: pytest.TempPathFactory) -> Iter
         yield dataset
 
 
-@pytest.mark.few(4)
+@pytest.mark.few(1)
 @pytest.mark.parametrize("method", _CALLS)
 def test_it_stays_lazy_and_computes_to_the_same_bits(method: str, curves: xr.Dataset, opened: xr.Dataset) -> None:
     call = _CALLS[method]

@@ -27,6 +27,7 @@ def test_what_is_lost_is_what_the_jumps_dissipate_to_the_stated_error(curves: xr
     assert float((loop.energy_lost_interpolation_error / loop.energy_lost).median()) < 0.2
 
 
+@pytest.mark.large
 def test_the_stated_errors_of_the_energy_hold() -> None:
     rng, holds = np.random.default_rng(1), []
     for _ in range(60):

@@ -161,6 +161,7 @@ def test_a_result_in_chunks_stays_lazy_and_has_the_same_errors(result: xr.Datase
     xr.testing.assert_allclose(lazy.compute(), result.roughmdr.at_pressure([50.0, 500.0]))
 
 
+@pytest.mark.large
 def test_statistics_of_a_result_in_chunks_that_is_controlled_by_force_stay_lazy() -> None:
     made = run(path={"force": ["10 uN", "20 uN", "50 uN"]}, batch={"realizations": 3})
     lazy, eager = made.chunk(realization=1).roughmdr.statistics(), made.roughmdr.statistics()

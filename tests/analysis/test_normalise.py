@@ -46,6 +46,7 @@ def test_the_expected_law_is_f_of_n() -> None:
     assert scaled.stiffness.attrs["long_name"].endswith("over 2 N E* (R sigma)^(1/2)")
 
 
+@pytest.mark.large
 def test_the_cells_of_a_sweep_fall_on_one_curve() -> None:
     sweep = {
         "mode": "product",
@@ -70,6 +71,7 @@ def test_the_cells_of_a_zipped_sweep_too() -> None:
         result.isel(cell=[0]).roughmdr.normalise("gw")
 
 
+@pytest.mark.large
 def test_statistics_and_pull_offs_are_scaled_too(curves: xr.Dataset, statistics: xr.Dataset) -> None:
     each, mean = curves.roughmdr.normalise("gw"), statistics.roughmdr.normalise("gw")
     np.testing.assert_allclose(mean.force_mean, each.force.mean("realization"), rtol=1e-9, atol=1e-15)

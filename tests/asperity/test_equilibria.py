@@ -111,6 +111,7 @@ def steps_of_table(rng: np.random.Generator) -> rm.Tabulated:
     return rm.Tabulated(r, np.concatenate([[0.0], np.cumsum(slopes * np.diff(r))]))
 
 
+@pytest.mark.large
 @settings(deadline=None, max_examples=5 if numba.config.DISABLE_JIT else 30)  # uncompiled a table takes seconds
 @given(seed=st.integers(0, 10**6), tension=st.floats(-2.0, 2.0), place=st.floats(1e-6, 1.0))
 def test_a_table_of_any_convex_form_has_its_equilibria_in_turn(seed: int, tension: float, place: float) -> None:

@@ -121,7 +121,7 @@ def natural(shape: Shape, numbers: dict[str, object]) -> tuple[float, float]:
     return abs(force), force / float(rm.pull_off(shape, control="displacement", **numbers).indentation)
 
 
-@pytest.mark.few(4)
+@pytest.mark.few(1)
 @pytest.mark.parametrize("name", TWINS + TWINS_DUGDALE)
 def test_a_curve_looked_at_point_by_point_says_the_same(name: str) -> None:
     shape, curve = twins()[name]
@@ -186,7 +186,7 @@ def test_a_part_is_found_however_short_it_is(beyond: float) -> None:
     assert [parts(trough * (1.0 + sign * beyond)) for sign in (-1.0, 1.0)] == [2, 1]
 
 
-@pytest.mark.few(4)
+@pytest.mark.few(1)
 @pytest.mark.parametrize("name", TWINS + TWINS_DUGDALE)
 def test_what_goes_out_comes_back(name: str) -> None:
     shape, curve = twins()[name]

@@ -105,7 +105,7 @@ def test_the_expected_law_is_taken_where_there_is_one(keep: str) -> None:
     assert "warnings" not in found.attrs or "was not reached" not in found.attrs["warnings"]
 
 
-@pytest.mark.few(1)
+@pytest.mark.large
 @pytest.mark.parametrize("keep", ["curves", "statistics"])
 def test_where_the_expected_law_is_not_right_enough_asperities_are_drawn(keep: str) -> None:
     asked = {"asperities": {**FEW, "correlation": {"radius": 1.0}}, "output": kept(keep)}
@@ -148,6 +148,7 @@ EVEN = [("stratified", number) for number in range(FIRST)]
 ALIKE: dict[str, Any] = {**FEW, "radius": "50 um"}
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize(
     ("table", "runs"),
     [
@@ -232,6 +233,7 @@ def test_the_expected_law_alone_says_where_it_is_not_right_enough() -> None:
     assert "max_realizations" not in found.attrs["warnings"]
 
 
+@pytest.mark.large
 def test_cells_that_are_easy_stop_early(tmp_path: Path) -> None:
     out = tmp_path / "out.nc"
     found = rm.run(asking(0.02, sweep=COUNTS), out)
@@ -285,6 +287,7 @@ def test_realisations_that_are_asked_for_are_the_least() -> None:
     assert go(asking(1.0)).realization_count == FIRST
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("method", ["sampled", "stratified"])
 def test_statistics_and_curves_come_to_the_same(method: str) -> None:
     sweep = {"asperities.count": [30, 300]}
@@ -318,7 +321,7 @@ def split(table: dict[str, Any], runs_per_task: int, workers: int) -> xr.Dataset
     return go(table, runs_per_task=runs_per_task, workers=workers)
 
 
-@pytest.mark.few(1)
+@pytest.mark.large
 @pytest.mark.parametrize("keep", ["curves", "statistics"])
 def test_the_outcome_depends_on_no_workers_and_no_tasks(keep: str) -> None:
     table = asking(0.05, sweep={"asperities.count": [30, 300]}, output=kept(keep))
@@ -327,7 +330,7 @@ def test_the_outcome_depends_on_no_workers_and_no_tasks(keep: str) -> None:
         assert_same(split(table, runs_per_task, workers), one)
 
 
-@pytest.mark.few(2)
+@pytest.mark.large
 @pytest.mark.parametrize("keep", ["curves", "statistics"])
 @pytest.mark.parametrize("after", [1, 4, 9])
 def test_the_outcome_depends_on_no_interruption(
@@ -351,6 +354,7 @@ def test_the_outcome_depends_on_no_interruption(
     assert_same(again, found)
 
 
+@pytest.mark.large
 def test_a_smaller_error_goes_on_from_the_curves_of_a_larger_one(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -389,7 +393,7 @@ def test_a_larger_error_drops_no_realisations_unasked(keep: str, tmp_path: Path)
         go(asking(1e-4, None, output=kept(keep)), out)
 
 
-@pytest.mark.few(2)
+@pytest.mark.large
 @pytest.mark.parametrize("keep", ["curves", "statistics"])
 @pytest.mark.parametrize("fails", [(3,), range(FIRST)])
 def test_a_cell_with_a_failure_is_left_as_it_is(
@@ -413,7 +417,7 @@ def test_a_cell_with_a_failure_is_left_as_it_is(
         assert CliRunner().invoke(main, arguments).exit_code == 0
 
 
-@pytest.mark.few(1)
+@pytest.mark.large
 @pytest.mark.filterwarnings("error")
 @pytest.mark.parametrize("keep", ["curves", "statistics"])
 def test_results_with_missing_realisations_can_be_looked_at(keep: str, tmp_path: Path) -> None:
@@ -447,6 +451,7 @@ def test_the_error_is_met_and_little_is_wasted(name: str) -> None:
     assert np.quantile(taken, 0.95) < 1.4 * 500
 
 
+@pytest.mark.large
 def test_the_study_follows_the_rule_that_runs_follow() -> None:
     """The number of realisations of a run is what the study finds for the run's own force."""
     table = {**SCENES["JKR, 40 asperities"], "accuracy": {"relative": 0.03, "method": "sampled"}}
@@ -456,6 +461,7 @@ def test_the_study_follows_the_rule_that_runs_follow() -> None:
     assert samples.stop_as_a_batch(np.arange(len(samples.force)), 0.03) == int(found.realization_count)
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("count", [16, 50, 300, 4000])
 def test_the_bound_holds_in_99_of_100_normal_samples(count: int) -> None:
     spread = np.random.default_rng(5).standard_normal((4_000_000 // count, count)).std(axis=1, ddof=1)

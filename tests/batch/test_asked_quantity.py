@@ -64,6 +64,7 @@ def method_of(found: xr.Dataset) -> str:
     return found.attrs["accuracy"].splitlines()[0].rpartition(": ")[2].partition(",")[0]
 
 
+@pytest.mark.large
 @pytest.mark.parametrize(
     ("of", "method"),
     [
@@ -110,6 +111,7 @@ def test_a_smaller_error_takes_more_realisations_and_never_fewer() -> None:
     assert counts[0] < counts[1] < within_4_percent().sizes["realization"]
 
 
+@pytest.mark.large
 def test_the_physics_in_other_units_is_chosen_alike() -> None:
     large_scale = {
         **ROUGH,
@@ -126,6 +128,7 @@ def test_the_physics_in_other_units_is_chosen_alike() -> None:
     np.testing.assert_allclose(there.contact_area, 1e12 * here.contact_area, rtol=1e-6)
 
 
+@pytest.mark.large
 def test_any_workers_and_an_interrupted_run_give_the_same_bits(tmp_path: Path) -> None:
     table = asking({**AREA, "contact_area": "6 %"})
     one, three = (
@@ -139,6 +142,7 @@ def test_any_workers_and_an_interrupted_run_give_the_same_bits(tmp_path: Path) -
     assert go(table, out=tmp_path / "a.nc").attrs["history"] == again.attrs["history"]  # it is finished
 
 
+@pytest.mark.large
 def test_statistics_and_curves_stop_alike() -> None:
     of = {"contact_area": "6 %", "at_pressure": "10 MPa"}
     curves, statistics = go(asking(of)), go(asking(of, output={"keep": "statistics"}))
@@ -154,6 +158,7 @@ def test_cells_of_a_sweep_share_a_method_that_suits_all() -> None:
     assert found.realization_count[0] < found.realization_count[1]
 
 
+@pytest.mark.large
 def test_without_a_method_that_is_right_enough_the_best_is_used_and_says_so() -> None:
     adhesion = {"model": "dugdale", "work": "50 mJ/m^2", "range": "1 nm"}
     with pytest.warns(rm.LimitWarning, match=r"the error asked for, 0\.1 %, was not reached in 1 of 1 cells"):
@@ -163,6 +168,7 @@ def test_without_a_method_that_is_right_enough_the_best_is_used_and_says_so() ->
     assert found.sizes["realization"] < 500  # draws need be no better than the model
 
 
+@pytest.mark.large
 def test_a_surface_is_pressed_by_boundary_elements_where_asperities_are_not_right_enough() -> None:
     found = go(asking({"contact_area": "15 %", "at_pressure": "20 MPa"}, asperities=MAP))
     assert method_of(found) == "boundary elements"
@@ -226,6 +232,7 @@ def test_without_a_contact_at_the_place_the_error_is_not_known(of: dict[str, Any
     assert "nan" not in found.attrs["accuracy"]
 
 
+@pytest.mark.large
 def test_an_interaction_that_is_given_or_swept_stays() -> None:
     of = {"contact_area": "5 %", "at_pressure": "10 MPa"}
     found = go(asking(of, interaction={"model": "mean_field"}))

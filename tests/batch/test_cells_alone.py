@@ -217,7 +217,7 @@ def assert_same_bits(swept: Labelled, cell: int, alone: Labelled) -> None:
         np.testing.assert_array_equal(of_cell(arrays[name]), lone[name].values, err_msg=f"{dim}: {name}")
 
 
-@pytest.mark.few(3)
+@pytest.mark.few(1)
 @pytest.mark.parametrize("kind", [large(kind) if kind in LONG else kind for kind in KINDS])
 @pytest.mark.filterwarnings("ignore")
 def test_a_cell_is_its_scene_alone(kind: str) -> None:

@@ -53,7 +53,7 @@ def ends(result: xr.Dataset) -> xr.Dataset:
     return result.isel(step=[0, -1])
 
 
-@pytest.mark.few(4)
+@pytest.mark.few(1)
 @pytest.mark.parametrize("adhesion", [None, JKR, pytest.param(DUGDALE, marks=pytest.mark.large)], ids=str)
 @pytest.mark.parametrize("shape", SHAPES)
 @pytest.mark.filterwarnings("ignore")
@@ -65,6 +65,7 @@ def test_nothing_touches_or_attracts_at_both_ends(shape: str, adhesion: Any) -> 
     assert (result.contact_count.max("step") > 0.0).all()
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("adhesion", [None, JKR, large(DUGDALE), large({**DUGDALE, "model": "auto"})], ids=str)
 @pytest.mark.parametrize(
     "height",
@@ -101,7 +102,7 @@ def test_the_clear_start_is_the_quantile_of_all_realisations() -> None:
     assert chance < 1e-3
 
 
-@pytest.mark.few(1)
+@pytest.mark.large
 @pytest.mark.parametrize("alpha", [1.6, 5.0, 1e3])
 def test_the_clear_start_of_a_gaussian_surface_is_exceeded_by_its_chance(alpha: float) -> None:
     from scipy.integrate import quad
@@ -124,6 +125,7 @@ def test_the_clear_start_of_a_gaussian_surface_is_exceeded_by_its_chance(alpha: 
         assert above == pytest.approx(chance, rel=1e-5)
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("adhesion", [JKR, DUGDALE], ids=str)
 def test_of_asperities_that_are_not_drawn_the_start_is_exact(tmp_path: Path, adhesion: Any) -> None:
     rng = np.random.default_rng(3)
@@ -146,6 +148,7 @@ def test_of_asperities_that_are_not_drawn_the_start_is_exact(tmp_path: Path, adh
     assert barely.contact_count.to_numpy()[0].tolist()[::2] == [0.0, 1.0]
 
 
+@pytest.mark.large
 def test_more_realisations_reuse_those_that_are_there(tmp_path: Path) -> None:
     few, many = (clear({"contact_fraction": 0.02}, batch={"realizations": n}) for n in (3, 9))
     before = rm.run(few, tmp_path / "out.nc")
@@ -156,7 +159,7 @@ def test_more_realisations_reuse_those_that_are_there(tmp_path: Path) -> None:
     np.testing.assert_array_equal(before.separation, other.separation)
 
 
-@pytest.mark.few(2)
+@pytest.mark.large
 @pytest.mark.parametrize("adhesion", [None, JKR, large(DUGDALE)], ids=str)
 @pytest.mark.parametrize(
     "target", [{"contact_fraction": 0.02}, large({"contact_fraction": 1e-4}), {"pressure": "2 kPa"}]
@@ -276,6 +279,7 @@ def test_wrong_ends_are_refused_with_their_line(tmp_path: Path, changes: dict[st
     assert str(caught.value).startswith(f"{tmp_path / 's.toml'}:")
 
 
+@pytest.mark.large
 def test_what_cannot_be_is_refused() -> None:
     with pytest.raises(SceneError, match=r"sweep\.path\.separation\.start\[0\] = 'clear': is no number to be swept"):
         rm.run(clear(sweep={"path.separation.start": ["clear", "4 sigma"]}))

@@ -114,6 +114,7 @@ def test_of_a_rough_surface_it_is_an_integral(scale: float, modulus: float) -> N
     holds(result, keys[3], 0.5 * force / (RADIUS * scale))
 
 
+@pytest.mark.large
 def test_a_spring_yields() -> None:
     """dF/dp = k/(k + S) of that at the separation; dF/dk = F S/(k (k + S))."""
     scale, modulus, steps = 1e-6, 2e9, np.array([2.0, 0.5, -1.0])

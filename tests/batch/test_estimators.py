@@ -36,7 +36,7 @@ def run(estimator: str, **changes: Any) -> xr.Dataset:
     )
 
 
-@pytest.mark.few(1)
+@pytest.mark.large
 @pytest.mark.parametrize(
     ("rough", "steps"),
     [
@@ -68,6 +68,7 @@ def stratified(count: int, seed: int = 3, realization: int = 0, **changes: Any) 
     return section.ensemble(seed, realization, stratified=True)
 
 
+@pytest.mark.large
 def test_stratified_asperities_are_from_the_same_distribution_but_more_even() -> None:
     count, spread = 1000, np.sqrt(np.log(1.01))
     radii = scipy.stats.lognorm(spread, scale=50 * UM / np.sqrt(1.01))
@@ -97,7 +98,7 @@ def rms(estimator: str, count: int, exact: xr.DataArray, **changes: Any) -> floa
     return float(np.sqrt(((found - exact) ** 2).mean()) / np.abs(exact).max())
 
 
-@pytest.mark.few(1)
+@pytest.mark.large
 @pytest.mark.parametrize("adhesion", [None, SCENE["adhesion"]])
 def test_stratified_is_nearer_than_sampled_and_of_first_order(adhesion: dict[str, Any] | None) -> None:
     exact = run("expected", adhesion=adhesion).force[0] / ASPERITIES["count"]

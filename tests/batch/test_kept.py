@@ -119,6 +119,7 @@ def test_fresh_would_throw_away_what_is_kept(tmp_path: Path) -> None:
     assert table(folder / "out.nc.parts")["continued_by"] == "roughmdr run scene.toml -o out.nc --set 'title=a b'"
 
 
+@pytest.mark.large
 def test_failed_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     few = {**ASPERITIES, "count": 20}
     swept = scene(asperities=few, batch={"realizations": 4}, sweep={"asperities.radius": ["50 um", "1e300 m", "60 um"]})

@@ -70,6 +70,7 @@ def test_a_separation_is_held() -> None:
     assert (one.contact_radius_sum == normal.contact_radius_sum[0]).all()
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize(("key", "value"), [("force", "1 N"), ("pressure", "1 MPa")])
 @pytest.mark.parametrize("estimator", ["sampled", "expected"])
 def test_a_load_is_held_at_a_separation_of_its_own(key: str, value: str, estimator: str) -> None:
@@ -99,6 +100,7 @@ def test_exponential_heights_have_a_law_in_closed_form() -> None:
     np.testing.assert_allclose(law.tangential_stiffness, law.tangential_stiffness[0] * rest, rtol=1e-9)
 
 
+@pytest.mark.large
 def test_draws_tend_to_the_expected_law() -> None:
     expected = rm.run(lateral(batch={"estimator": "expected"})).isel(realization=0)
     drawn = rm.run(lateral(batch={"realizations": 400}, output={"variables": VARIABLES, "keep": "statistics"}))
@@ -248,6 +250,7 @@ def test_a_load_that_is_out_of_reach_is_refused() -> None:
         rm.run(lateral(tangential={"friction": 1e13}))
 
 
+@pytest.mark.large
 def test_commands(tmp_path: Path) -> None:
     file, out = tmp_path / "loop.toml", tmp_path / "loop.nc"
     file.write_text(tomli_w.dumps(lateral()))

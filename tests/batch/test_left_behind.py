@@ -37,7 +37,7 @@ OTHERS: dict[str, dict[str, Any] | None] = {
 }
 
 
-@pytest.mark.few(4)
+@pytest.mark.few(1)
 @pytest.mark.parametrize("keep", ["curves", "statistics"])
 @pytest.mark.parametrize("other", OTHERS)
 def test_an_interrupted_fresh_run_goes_on_beside_the_file_that_it_replaces(
@@ -79,6 +79,7 @@ def test_an_interrupted_fresh_run_replaces_nothing_else(
     assert out.read_bytes() == content
 
 
+@pytest.mark.large
 def test_kept_runs_of_other_cells_excuse_no_loss(tmp_path: Path) -> None:
     """They were kept when a run was refused, since its result would have held less than the one that is there."""
     out = tmp_path / "out.nc"
@@ -108,6 +109,7 @@ def test_what_others_have_in_the_folder_of_parts_stays(linked: bool, tmp_path: P
     assert all(file.read_text() == "mine" for file in files)
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("lacking", ["remark", "adhesion_law"])
 @pytest.mark.parametrize("command", [["info"], ["info", "--cells"], ["plot", "-o", "a.png"]])
 def test_a_result_without_what_explains_it_is_shown(

@@ -39,6 +39,7 @@ def gathered(values: np.ndarray, cuts: list[int], order: random.Random, *, singl
     return tree
 
 
+@pytest.mark.large
 @settings(deadline=None, max_examples=150)
 @given(
     values=st.lists(EXTREME, min_size=1, max_size=70),
@@ -55,6 +56,7 @@ def test_the_bits_depend_on_no_cut_and_no_order(
     assert bits(whole) == bits(moments_of(array))
 
 
+@pytest.mark.large
 @settings(deadline=None, max_examples=100)
 @given(values=st.lists(st.one_of(ORDINARY, EXTREME), min_size=1, max_size=40))
 def test_they_are_right_to_the_last_digits(values: list[float]) -> None:
@@ -77,6 +79,7 @@ def test_they_are_right_to_the_last_digits(values: list[float]) -> None:
         assert found.standard_error[0] == expected
 
 
+@pytest.mark.large
 @settings(deadline=None, max_examples=100)
 @given(offset=st.sampled_from([1e3, -1e6, 1e9]), seed=st.integers(0, 1000), count=st.integers(2, 300))
 def test_a_small_spread_about_a_large_mean_keeps_its_digits(offset: float, seed: int, count: int) -> None:

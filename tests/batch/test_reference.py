@@ -75,6 +75,7 @@ def test_hills_are_near_it(result: xr.Dataset) -> None:
     assert float(result["reference_error"].where(loaded).max()) <= 0.02
 
 
+@pytest.mark.large
 def test_variables_beside_those_that_are_asked_for() -> None:
     asked = ["contact_fraction", "pressure"]
     found = rm.run(of_spectrum(output={"variables": asked, "keep": "statistics"}, reference={**ELEMENTS, "error": 0.1}))
@@ -117,7 +118,7 @@ def test_where_the_reference_reaches_a_pressure(result: xr.Dataset) -> None:
         result.drop_vars("reference_force").roughmdr.at_force(1e-6, reference=True)
 
 
-@pytest.mark.few(2)
+@pytest.mark.large
 @pytest.mark.parametrize(
     ("periodic", "interaction", "line"),
     [
@@ -207,6 +208,7 @@ def test_the_reference_does_not_change_the_law(result: xr.Dataset) -> None:
     assert "boundary elements: the scene has no [reference]" in without.attrs["left_out"]
 
 
+@pytest.mark.large
 def test_the_same_bits_for_any_workers(result: xr.Dataset) -> None:
     again = rm.run(of_spectrum(), workers=1)
     for name in ("reference_force", "reference_contact_area", "reference_stiffness", "reference_area_error"):
@@ -254,6 +256,7 @@ def test_a_file_without_positions_or_with_hills_has_no_reference(tmp_path: Path)
             rm.run(table)
 
 
+@pytest.mark.large
 def test_below_the_mean_height_there_is_no_reference_and_it_is_said() -> None:
     table = of_spectrum(path={"separation": ["2 sigma", "-0.5 sigma"]}, interaction=None, batch=None)
     with pytest.warns(rm.LimitWarning, match="no equilibrium at 1 steps"):
@@ -323,6 +326,7 @@ def test_the_error_is_relative_to_the_force_that_is_asked_for() -> None:
     np.testing.assert_array_equal(fine["force"], coarse["force"])
 
 
+@pytest.mark.large
 def test_under_a_load_it_stands_where_it_bears_that_load(result: xr.Dataset) -> None:
     """The way back: the separations that loads lead to bear these loads, with the same other numbers."""
     loads = result["reference_force"][0].to_numpy()
@@ -359,6 +363,7 @@ def test_a_lone_sphere_under_a_load_is_that_of_Hertz(length: float, modulus: flo
     assert (off <= 1.5 * found["reference_area_error"]).all()
 
 
+@pytest.mark.large
 def test_loads_that_pull_the_flat_off_have_no_reference() -> None:
     found = rm.run(of_spectrum(path={"pressure": ["10 kPa", "0 Pa", "-1 kPa"]}, batch={"realizations": 1}))
     force = found["reference_force"][0].to_numpy()

@@ -139,6 +139,7 @@ def test_more_realisations_compute_only_those_that_are_missing(calls: Calls, out
     assert_same(go(small(11), out), more)
 
 
+@pytest.mark.large
 def test_a_longer_sweep_computes_only_its_new_cells(calls: Calls, out: Path) -> None:
     go(swept(WORKS), out)
     calls.taken()
@@ -154,6 +155,7 @@ def test_a_longer_sweep_computes_only_its_new_cells(calls: Calls, out: Path) -> 
     assert_same(go(longer, out), found)
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize(
     ("before", "after"),
     [
@@ -198,7 +200,7 @@ def refused(table: dict[str, Any], out: Path, message: str) -> None:
 VARIABLES = ["force", "contact_area", "energy"]
 
 
-@pytest.mark.few(2)
+@pytest.mark.large
 @pytest.mark.parametrize("keep", ["curves", "statistics"])
 @pytest.mark.parametrize(
     ("asked", "gone"), [(["energy", "force"], "contact_area"), (["pressure"], ", ".join(VARIABLES))]
@@ -213,6 +215,7 @@ def test_no_variable_is_dropped_unasked(asked: list[str], gone: str, keep: str, 
     assert_same(go(fewer, out, resume=False), go(fewer, None))
 
 
+@pytest.mark.large
 def test_no_curves_are_dropped_unasked(calls: Calls, out: Path) -> None:
     go(swept(WORKS[:2]), out)
     calls.taken()
@@ -242,6 +245,7 @@ def held_by(result: xr.Dataset) -> set[tuple[str, str, str, int]]:
     return found
 
 
+@pytest.mark.large
 @settings(
     max_examples=int(os.environ.get("ROUGHMDR_RESULTS", "5")),
     deadline=None,
@@ -302,7 +306,7 @@ CHANGES: dict[str, tuple[dict[str, Any], str]] = {
 }
 
 
-@pytest.mark.few(5)
+@pytest.mark.few(1)
 @pytest.mark.parametrize("keep", ["curves", "statistics"])
 @pytest.mark.parametrize("name", CHANGES)
 def test_another_scene_is_refused(name: str, keep: str, calls: Calls, out: Path) -> None:
@@ -320,6 +324,7 @@ def test_another_scene_is_refused(name: str, keep: str, calls: Calls, out: Path)
     assert_same(go(other, out, resume=False), go(other, None))
 
 
+@pytest.mark.large
 def test_files_count_by_what_is_in_them(calls: Calls, out: Path, tmp_path: Path) -> None:
     def written(name: str, seed: int) -> dict[str, Any]:
         rm.generate(FEW, seed=seed).to_netcdf(tmp_path / name)
@@ -343,6 +348,7 @@ def test_files_count_by_what_is_in_them(calls: Calls, out: Path, tmp_path: Path)
     assert_same(go(same, out, resume=False), go(other, None))
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("content", [b"", b"no result", b"\x89HDF\r\n\x1a\n rest"])
 def test_a_file_that_is_no_result_is_left_alone(content: bytes, out: Path) -> None:
     out.write_bytes(content)
@@ -360,7 +366,7 @@ def test_a_netcdf_file_of_another_kind_is_left_alone(out: Path) -> None:
     assert xr.load_dataset(out).force.to_numpy().tolist() == [1.0, 2.0]
 
 
-@pytest.mark.few(1)
+@pytest.mark.large
 @pytest.mark.parametrize("keep", ["curves", "statistics"])
 def test_numbers_that_were_changed_are_refused(keep: str, calls: Calls, out: Path) -> None:
     table = swept(WORKS[:2], output=kept(keep))
@@ -388,6 +394,7 @@ def test_numbers_that_were_changed_are_refused(keep: str, calls: Calls, out: Pat
     assert not calls.taken()
 
 
+@pytest.mark.large
 def test_statistics_with_more_realisations_are_computed_anew(calls: Calls, out: Path) -> None:
     go(small(6, output=kept("statistics")), out)
     calls.taken()
@@ -444,7 +451,7 @@ def test_other_versions_are_not_used(
     assert not store_folder(out).exists()
 
 
-@pytest.mark.few(3)
+@pytest.mark.few(1)
 @pytest.mark.parametrize("keep", ["curves", "statistics"])
 @pytest.mark.parametrize("after", [1, 4, 8])
 def test_what_an_interrupted_run_finished_is_used(
@@ -460,7 +467,7 @@ def test_what_an_interrupted_run_finished_is_used(
     assert_same(found, go(table, None))
 
 
-@pytest.mark.few(1)
+@pytest.mark.large
 @pytest.mark.parametrize("keep", ["curves", "statistics"])
 def test_an_interrupted_run_asked_for_otherwise(
     keep: str, calls: Calls, out: Path, monkeypatch: pytest.MonkeyPatch
@@ -524,7 +531,7 @@ def test_an_interrupted_run_of_another_scene_is_refused(out: Path, monkeypatch: 
     assert not store_folder(out).exists()
 
 
-@pytest.mark.few(1)
+@pytest.mark.large
 @pytest.mark.parametrize("keep", ["curves", "statistics"])
 def test_what_failed_is_computed_again(keep: str, calls: Calls, out: Path) -> None:
     table = swept(WORKS[:2], output=kept(keep))

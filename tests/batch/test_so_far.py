@@ -37,6 +37,7 @@ def check(law: LawSoFar, table: dict[str, Any], **cell: int) -> None:
         np.testing.assert_allclose(values, expected[law.steps], rtol=1e-12, atol=1e-13 * np.abs(expected).max())
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize(
     "changes",
     [
@@ -56,6 +57,7 @@ def test_it_is_the_law_of_the_runs_that_are_kept(
     check(law, table)
 
 
+@pytest.mark.large
 def test_of_a_sweep_the_first_cell_is_told_and_each_of_its_files_is_read_once(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -90,6 +90,7 @@ def test_the_expected_law_is_the_mean_of_realisations() -> None:
     assert many.time.dims == ("step",)
 
 
+@pytest.mark.large
 def test_a_sweep_over_speeds_has_a_time_for_each() -> None:
     speeds = ["0.1 um/s", "1 um/s", "10 um/s"]
     swept = rm.run(viscoelastic(sweep={"viscoelastic.speed": speeds, "viscoelastic.dwell": [0.0, "2 s"]}))
@@ -101,6 +102,7 @@ def test_a_sweep_over_speeds_has_a_time_for_each() -> None:
     assert (swept.force[..., 19].diff("viscoelastic_speed") > 0.0).all()
 
 
+@pytest.mark.large
 def test_the_same_bits_for_any_number_of_workers(result: xr.Dataset) -> None:
     again = rm.run(viscoelastic(), workers=1, scheduler="processes")
     for name in USUAL:

@@ -30,6 +30,7 @@ LONG = [
     "contact_engineering",
     "contacts_that_yield",
     "greenwood_williamson",
+    "interaction",
     "lammps",
     "layers",
     "measured_curves",

@@ -47,7 +47,7 @@ def crowded(**changes: Any) -> Any:
     return rm.generate({**CROWDED, **changes}, seed=3)
 
 
-@pytest.mark.few(2)
+@pytest.mark.large
 @pytest.mark.parametrize("side", OVER_HERTZ)
 def test_a_periodic_paraboloid(side: float) -> None:
     expected = 4.0 / 3.0 * OVER_HERTZ[side]
@@ -60,6 +60,7 @@ def test_a_periodic_paraboloid(side: float) -> None:
     assert grid.stiffness(-1.0) == pytest.approx((rates[0] - rates[1]) / 0.2, rel=0.01)
 
 
+@pytest.mark.large
 def test_another_program_finds_the_same_forces_and_pressures() -> None:
     rng = np.random.default_rng(2)
     waves = np.hypot(np.fft.fftfreq(64)[:, None], np.fft.rfftfreq(64)) * 64
@@ -202,6 +203,7 @@ def test_a_free_patch_has_no_grid() -> None:
         rm.load_separation(crowded(), separation=1e-6, effective_modulus=1e6, interaction={**GRID, "boundary": "free"})
 
 
+@pytest.mark.large
 @given(
     arrays(bool, array_shapes(min_dims=2, max_dims=2, min_side=2, max_side=9)),
     st.sampled_from([1e-18, 1.0, 1e6]),
@@ -223,6 +225,7 @@ def test_the_error_of_the_area_is_of_the_sides_at_the_edges(loaded: NDArray[np.b
     assert turned.patches().area_error == pytest.approx(one.area_error, rel=1e-12)
 
 
+@pytest.mark.large
 @pytest.mark.parametrize("unit", [1e-9, 1e3])
 def test_nearly_all_hertzian_areas_and_stiffnesses_are_within_their_errors(unit: float) -> None:
     """At given force, of paraboloids of 2 to 12 cells in radius, alone and anywhere between the points."""

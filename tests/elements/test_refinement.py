@@ -55,6 +55,7 @@ def test_undefined_points_are_never_touched_on_any_grid() -> None:
     assert np.isfinite(fine).sum() == 128**2 - 20 * 20
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("unit", [1e-9, 1.0, 1e3])
 def test_a_paraboloid_that_stands_alone_is_hertz(unit: float) -> None:
     x = (np.arange(128) + 0.5) / 32.0 - 2.0
@@ -86,6 +87,7 @@ def test_contacts_at_opposite_rims_are_two_where_the_map_ends() -> None:
         assert grid.patches().contacts == contacts
 
 
+@pytest.mark.large
 @pytest.mark.parametrize("periodic", [True, large(False)])
 @pytest.mark.parametrize("error", [0.1, large(0.02)])
 def test_the_error_asked_for_is_met(periodic: bool, error: float) -> None:

@@ -41,6 +41,7 @@ def slow_map(ensemble: Ensemble, shape: tuple[int, int]) -> Floats:
     return heights
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize("shape", SHAPES)
 @pytest.mark.parametrize("depth", [1e-6, 3e-5])
 def test_it_is_the_highest_of_all_images(shape: str, depth: float) -> None:

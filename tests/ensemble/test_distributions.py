@@ -229,6 +229,7 @@ def test_a_scale_must_be_given() -> None:
         rm.generate({**ASPERITIES, "height": {"distribution": "gamma", "a": 2.0}}, seed=1)
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize(
     ("family", "mean"),
     [

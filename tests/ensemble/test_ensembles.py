@@ -24,6 +24,7 @@ def test_the_stream_is_numpys_philox_under_the_documented_key() -> None:
     assert 0.0 < SMALLEST_UNIFORM < 1.0 - SMALLEST_UNIFORM < 1.0
 
 
+@pytest.mark.large
 def test_heights_and_radii_follow_their_distributions() -> None:
     spread = np.sqrt(np.log(1.0 + 0.1**2))
     radius = scipy.stats.lognorm(spread, scale=50e-6 / np.sqrt(1.0 + 0.1**2))

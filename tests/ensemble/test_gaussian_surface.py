@@ -65,6 +65,7 @@ def test_moments_of_the_summits() -> None:
     assert MICRO.density == pytest.approx(m4 / (6.0 * math.pi * math.sqrt(3.0) * m2), rel=1e-15)
 
 
+@pytest.mark.large
 def test_summits_are_maxima_of_gaussian_derivatives() -> None:
     """From covariances alone: (h, hxx, hyy, hxy) are normal, and the density of maxima goes as the determinant."""
     m0, m2, m4 = MICRO.moments
@@ -109,7 +110,7 @@ def test_products_of_curvatures_are_the_inverse_of_their_distribution(S: float) 
             assert abs((v - 1) * mp.exp(v) + 1 - u * level) < 3e-14 * v * (v * mp.exp(v))
 
 
-@pytest.mark.few(2)
+@pytest.mark.large
 @pytest.mark.parametrize("alpha", ALPHAS[1:])
 def test_the_density_of_height_is_the_integral_over_the_mean_curvature(alpha: float) -> None:
     summits, unit = of_alpha(alpha), math.sqrt(2.5)

@@ -69,6 +69,7 @@ def test_round_hills_have_the_profile_of_their_waves() -> None:
     )
 
 
+@pytest.mark.large
 @pytest.mark.parametrize("ratio", [1.0, 2.0, 4.0])
 def test_small_contacts_of_long_hills_are_those_of_Hertz(ratio: float) -> None:
     """The ellipse on a paraboloid of two curvatures: K. L. Johnson, Contact Mechanics (1985), 4.26 to 4.34."""
@@ -112,6 +113,7 @@ def test_the_table_is_the_slope_of_the_convex_hull() -> None:
     assert not fill_table(radius, np.full(12, 5.0), 5.0, points, g)
 
 
+@pytest.mark.large
 def test_hills_turn_shift_and_scale_with_their_map() -> None:
     height = rough(1)
     found = hills_of(height)
@@ -138,6 +140,7 @@ def force_of_elements(height: Floats, separation: Floats) -> tuple[Floats, Float
     return force, fraction
 
 
+@pytest.mark.large
 @pytest.mark.parametrize(("seed", "hurst"), [(21, 0.8), (22, 0.5)])
 def test_coupled_hills_press_as_boundary_elements_do(seed: int, hurst: float) -> None:
     height = rough(seed, hurst=hurst)
@@ -229,6 +232,7 @@ def test_a_run_of_hills_states_its_error(map_file: Path, tmp_path: Path) -> None
     np.testing.assert_array_equal(again.model_error, result.model_error)
 
 
+@pytest.mark.large
 def test_hills_that_are_not_coupled_say_so(map_file: Path) -> None:
     with pytest.warns(rm.LimitWarning, match=r'ask for \[interaction\] model = "pairwise"'):
         result = rm.run(of_hills(map_file))
@@ -250,6 +254,7 @@ def test_what_is_no_hill_is_refused(map_file: Path, changes: dict[str, Any], say
         rm.generate(section, seed=0)
 
 
+@pytest.mark.large
 def test_adhesive_hills_are_coupled_and_part(map_file: Path) -> None:
     """To 4 % of contact: where more of them overlap, no equilibrium may be found."""
     ensemble = rm.generate({"source": "surface", "model": "hills", "file": str(map_file)}, seed=0)
@@ -301,6 +306,7 @@ def test_the_error_by_the_border_falls_with_the_side_and_is_a_part_of_the_model_
     assert float(law.model_error) >= float(law.border_error)
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize(("row", "column"), [(0, 64), (-4, 64), (6, 64), (0, 0), (5, 5)])
 def test_a_hill_that_the_border_cuts_bears_what_is_left_of_it(row: int, column: int) -> None:
     """A hill with its top on the border, beyond it, beside it, or at a corner; a low one is far from it on the map."""

@@ -34,6 +34,7 @@ def distances(placed: xr.Dataset, neighbours: int) -> Any:
     return cKDTree(points, boxsize=sides).query(points, k=neighbours + 1)[0][:, 1:]
 
 
+@pytest.mark.large
 @settings(max_examples=40, deadline=None)
 @given(kind=st.sampled_from(list(NEIGHBOURS)), pitch=st.floats(1e-9, 1e-3), sites=st.floats(4.0, 40.0))
 def test_a_lattice_by_pitch_is_exact(kind: str, pitch: float, sites: float) -> None:
@@ -71,6 +72,7 @@ def test_vacancies_are_made_only_if_asked_for() -> None:
     assert 57 * 64 - placed.sizes["asperity"] == 48
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize(
     ("changes", "unit", "within"),
     [

@@ -50,6 +50,7 @@ def test_a_cut_distribution_is_the_known_one(entry: dict[str, object], known: sc
     assert float(drawn.max()) <= distribution.max
 
 
+@pytest.mark.large
 @settings(deadline=None, max_examples=40)
 @given(
     st.sampled_from([("norm", ()), ("lognorm", (0.7,)), ("gamma", (2.5,)), ("uniform", ()), ("weibull_min", (1.5,))]),
@@ -74,6 +75,7 @@ def test_scores_and_moments_of_any_cut_distribution(
     assert math.sqrt(mass @ (z - distribution.mean) ** 2) == pytest.approx(distribution.std, rel=1e-8)
 
 
+@pytest.mark.large
 @pytest.mark.parametrize("rank", [-1.0, -0.6, 0.3, 1.0])
 def test_heights_and_radii_are_correlated(rank: float) -> None:
     """Each alone is unchanged: the same heights, and radii from the same distribution."""

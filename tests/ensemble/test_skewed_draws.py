@@ -44,6 +44,7 @@ def mean_force(spread: float, count: int) -> float:
     return count * 2.0 / math.pi * MODULUS * DEPTH**2 / 0.1 * math.sqrt(1.0 + spread**2)
 
 
+@pytest.mark.large
 @settings(deadline=None, max_examples=15)
 @given(st.floats(0.3, 30.0), st.integers(1, 2000), st.integers(16, 100_000))
 def test_unmet_variance_is_that_of_the_tail(spread: float, count: int, realizations: int) -> None:
@@ -124,6 +125,7 @@ def test_an_error_that_cannot_be_met_is_reported() -> None:
     assert float(found.accuracy_reached) > 2.0 * float((found.force_sem / found.force_mean).max())
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("effective_modulus", [1e-200, 1e200])
 def test_forces_whose_squares_no_float_holds(effective_modulus: float) -> None:
     """The relative error is that of any modulus."""
@@ -135,7 +137,7 @@ def test_forces_whose_squares_no_float_holds(effective_modulus: float) -> None:
     assert count[0] == count[1]
 
 
-@pytest.mark.few(1)
+@pytest.mark.large
 @pytest.mark.parametrize("keep", ["curves", "statistics"])
 def test_same_bits_for_any_tasks_and_after_an_interruption(
     keep: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch

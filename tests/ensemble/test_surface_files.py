@@ -49,7 +49,7 @@ def generate(path: Path, **keys: object) -> xr.Dataset:
     return rm.generate({"source": "surface", "file": str(path), **keys}, seed=0)
 
 
-@pytest.mark.few(4)
+@pytest.mark.few(1)
 @pytest.mark.parametrize(
     ("name", "write"),
     [
@@ -245,6 +245,7 @@ REFUSED: list[tuple[str, Callable[[Path], object], dict[str, object], str]] = [
 ]
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize(("name", "make", "keys", "says"), REFUSED)
 def test_invalid_maps_are_refused(
     tmp_path: Path, name: str, make: Callable[[Path], object], keys: dict[str, object], says: str

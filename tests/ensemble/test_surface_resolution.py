@@ -25,7 +25,7 @@ def judged(height: np.ndarray) -> tuple[float, dict[str, float | int | str]]:
     return float(np.mean(1.0 / found.parameters["radius"])), found.attrs
 
 
-@pytest.mark.few(4)
+@pytest.mark.few(1)
 @pytest.mark.parametrize(("longest", "hurst"), [(FINE * 1.1, 0.8), (FINE * 8.0, 0.8), (FINE * 8.0, 0.3)])
 @pytest.mark.parametrize("coarser", [1, 2, 4, 8])
 def test_the_estimate_is_near_the_error_of_the_curvature(longest: float, hurst: float, coarser: int) -> None:
@@ -91,6 +91,7 @@ def section(folder: Path, height: np.ndarray, **keys: object) -> dict[str, objec
     return {"source": "surface", "file": str(folder / "map.npz"), "periodic": True, **keys}
 
 
+@pytest.mark.large
 def test_a_cutoff_that_changes_the_radii_is_warned_of(tmp_path: Path) -> None:
     clean = waves(512, 24, 200)
     noisy = clean + 0.01 * np.random.default_rng(0).normal(size=clean.shape)

@@ -275,6 +275,7 @@ def metropro(path: Path, phase: np.ndarray, intensity: int = 0) -> None:
     path.write_bytes(bytes(header) + bytes(2 * intensity**2) + phase.astype(">i4").tobytes())
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("suffix", [".dat", ".txt", ".csv", ".xyz", ".asc", ".any"])
 def test_files_of_instruments_are_known_by_their_content(tmp_path: Path, suffix: str) -> None:
     pytest.importorskip("SurfaceTopography")

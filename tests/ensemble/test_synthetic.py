@@ -66,6 +66,7 @@ def test_a_map_is_scaled_to_its_height_or_its_slope(tmp_path: Path) -> None:
     np.testing.assert_allclose(steep.height / steep.height.std(), usual.height / usual.height.std(), atol=1e-12)
 
 
+@pytest.mark.large
 def test_height_and_slope_together_are_refused(tmp_path: Path) -> None:
     command = [sys.executable, SCRIPT, "map.nc", "--rms", "1 um", "--slope", "0.1"]
     done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False)

@@ -356,6 +356,7 @@ def problem_of(case: dict[str, object], separation: Floats) -> MeanProblem:
     return MeanProblem(made.asperities, path, made.effective_modulus, made.adhesion_model, (FORCE,))
 
 
+@pytest.mark.large
 def test_the_error_falls_exponentially_with_the_order() -> None:
     """Without the parts it falls about as one over the order squared."""
     case = CASES[-1]

@@ -68,6 +68,7 @@ def jkr_mean(
     return total
 
 
+@pytest.mark.large
 def test_jkr_loading_and_unloading_against_plain_quadrature() -> None:
     """Also at steps at which only some asperities are still in contact with their lowest summits."""
     effective_modulus, work = 4e6, 0.05
@@ -127,6 +128,7 @@ LAWS = [
 ]
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize(("asperities", "adhesion"), [*LAWS[:3], *(large(*law) for law in LAWS[3:])])
 def test_the_mean_of_draws_is_the_expected_law(
     asperities: dict[str, object], adhesion: dict[str, object] | None
@@ -152,7 +154,7 @@ KINKED: list[dict[str, object]] = [
 ]
 
 
-@pytest.mark.few(1)
+@pytest.mark.large
 @pytest.mark.parametrize("radius", KINKED)
 def test_the_error_bound_holds_where_contacts_detach(
     radius: dict[str, object], monkeypatch: pytest.MonkeyPatch
@@ -175,6 +177,7 @@ def test_the_error_bound_holds_where_contacts_detach(
     assert float(np.abs(law.force - fine.force).max()) <= (stated + left) * largest
 
 
+@pytest.mark.large
 @pytest.mark.parametrize("m4", [7.5e8, 1e9, 5e9, 4e12])
 def test_summits_of_a_gaussian_surface_are_greenwoods(m4: float) -> None:
     """Two independent computations of one integral, alpha from 1.9 to 10 000."""
@@ -225,6 +228,7 @@ def test_energy_is_conserved_on_average() -> None:
     assert off[0] / off[1] > 2.5  # second order where the force is smooth, a little less at kinks
 
 
+@pytest.mark.large
 @settings(deadline=None, max_examples=30)
 @given(st.lists(st.floats(-1.0, 2.0), min_size=1, max_size=6), st.booleans())
 def test_intervals_remember_what_asperities_do(turns: list[float], corners: bool) -> None:
@@ -283,6 +287,7 @@ def test_a_kink_at_the_end_of_a_piece_is_seen() -> None:
         assert abs(at_end - (2.0 - kink)) <= table.error_bound[-1, 0] + 1e-15
 
 
+@pytest.mark.large
 def test_cohesive_contacts_that_begin_to_touch_in_loading() -> None:
     """Where they do, the force has a kink."""
     stiff = {"shape": "paraboloid", "radius": 2e-5, "height": {"distribution": "expon", "std": "1.4 nm"}}
@@ -299,7 +304,7 @@ def stratified_draws(asked: dict[str, object]) -> tuple[np.ndarray, np.ndarray]:
     return force.mean("realization").to_numpy(), force.std("realization", ddof=1).to_numpy() / 8.0
 
 
-@pytest.mark.few(1)
+@pytest.mark.large
 @pytest.mark.parametrize("height", [0, {"distribution": "normal", "std": "3 nm"}])
 def test_heights_narrow_beside_the_depths_of_the_folds(height: object) -> None:
     """Which contacts detach depends on their radii, not on their heights: the rule over the radii is split there."""
@@ -314,6 +319,7 @@ def test_heights_narrow_beside_the_depths_of_the_folds(height: object) -> None:
     assert abs(force[-1]) < 1e-9 * np.abs(force).max()
 
 
+@pytest.mark.large
 def test_a_large_error_is_stated_and_warned_of() -> None:
     """Poles in two shape parameters at once: no rule over both is right to 1e-3."""
     poles = {
@@ -348,6 +354,7 @@ def test_areas_converge_too_where_the_force_did_immediately() -> None:
     assert area == pytest.approx(10 * math.pi * (high**3 - low**3) / (3.0 * (high - low)), rel=1e-9, abs=0.0)
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("coefficient", [1e-300, 1e300])
 def test_contacts_that_overflow_or_underflow_are_refused(coefficient: float) -> None:
     """Areas of blunt cones overflow, those of sharp cones underflow; numpy does not warn."""

@@ -48,7 +48,7 @@ def expected(height: dict[str, object], separation: list[float], **more: object)
     return rm.run(scene).isel(realization=0, missing_dims="ignore")
 
 
-@pytest.mark.few(8)
+@pytest.mark.few(1)
 @pytest.mark.parametrize(("family", "own"), POLES)
 @pytest.mark.parametrize(("loc", "unit"), [(0.0, UM), (1e-3, UM), (-2.0, 1e-2)])
 def test_heights_whose_density_has_a_pole(family: str, own: dict[str, float], loc: float, unit: float) -> None:
@@ -67,6 +67,7 @@ def test_heights_whose_density_has_a_pole(family: str, own: dict[str, float], lo
     assert float(law.numerical_error) < 1e-5
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize(("df", "worst"), [(1.8, 2e-12), (1.6, 1e-7), (1.55, 2e-4)])
 def test_heights_of_heavy_tails(df: float, worst: float) -> None:
     """E[T^1.5; T > 0] of Student's t has a closed form; very few of the heights bear most of it."""
@@ -97,7 +98,7 @@ RADII = [
 ]
 
 
-@pytest.mark.few(3)
+@pytest.mark.few(1)
 @pytest.mark.parametrize(("family", "own"), RADII)
 def test_radii_whose_density_has_a_pole_or_a_heavy_tail(family: str, own: dict[str, float]) -> None:
     law = expected(
@@ -113,6 +114,7 @@ def test_radii_whose_density_has_a_pole_or_a_heavy_tail(family: str, own: dict[s
     assert float(law.numerical_error) < 1e-10
 
 
+@pytest.mark.large
 @pytest.mark.parametrize("c", [0.6, 0.8, 0.95, 1.2])
 def test_an_area_that_has_no_mean_is_refused(c: float) -> None:
     """With Lomax's radii the mean force depends on their mean root, the mean area on their mean."""
@@ -131,6 +133,7 @@ def test_an_area_that_has_no_mean_is_refused(c: float) -> None:
         assert float(expected(height, [0.0], **both).contact_area[0]) == pytest.approx(area, rel=1e-6)
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("h", [1e-18, 1e-20, 1e-22, 1e-25, 0.0])
 def test_a_count_next_to_a_pole_is_right_or_refused(h: float) -> None:
     """Most of the heights lie within a rounding of the scale from the pole."""
@@ -215,6 +218,7 @@ def test_a_requested_error_is_reached_next_to_a_pole() -> None:
         assert abs(float(law.force[-1]) / force - 1.0) <= min(relative, float(law.numerical_error) + 1e-13)
 
 
+@pytest.mark.large
 @settings(deadline=None, max_examples=30)
 @given(st.floats(0.02, 5.0), st.floats(0.02, 5.0), st.sampled_from([0.0, 1e-3]), st.floats(-0.5, 1.5))
 def test_the_table_of_heights_counts_all_of_them(a: float, b: float, loc: float, at: float) -> None:
@@ -254,6 +258,7 @@ def test_random_distributions_of_scipy() -> None:
     of_all_families(2026, 40)
 
 
+@pytest.mark.large
 @pytest.mark.parametrize(
     "radius", [{"distribution": "pareto", "b": 0.8}, {"distribution": "beta", "a": 0.05, "b": 0.05}]
 )
@@ -266,6 +271,7 @@ def test_the_steps_of_the_path_do_not_change_the_force(radius: dict[str, object]
     assert max(forces) / min(forces) - 1.0 <= 2.0 * max(float(law.numerical_error) for law in laws)
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("s", [0.5, 3.0, 5.0])
 def test_a_step_back_leaves_the_loading_as_it_is(s: float) -> None:
     """Very few asperities have the large radii that bear the force; a rule with cuts must not leave them out."""

@@ -61,6 +61,7 @@ def summed(table: Any, shape: str, separation: Floats, **material: Any) -> tuple
     return force, area
 
 
+@pytest.mark.large
 @pytest.mark.parametrize(
     ("changes", "material", "error"),
     [
@@ -99,6 +100,7 @@ def test_the_sum_over_the_nodes_is_the_expected_law(
         assert part in header_of(tmp_path / "nodes.csv")
 
 
+@pytest.mark.large
 @pytest.mark.parametrize(
     ("changes", "order"), [({"adhesion": None}, 1.5), ({}, 0.8)], ids=["begins without a jump", "jumps"]
 )

@@ -28,6 +28,7 @@ def scene(sigma: float, modulus: float, radius: Any, work: float) -> dict[str, A
     }  # fmt: skip
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize(("sigma", "modulus"), [(1e-8, 1e11), (1e-3, 1e5)])
 @pytest.mark.parametrize(("spread", "work"), [(0.0, 0.0), (0.0, 0.3), (0.3, 0.0), (0.3, 0.3)])
 def test_it_is_that_of_the_whole_law(sigma: float, modulus: float, spread: float, work: float) -> None:
@@ -51,6 +52,7 @@ DRAWN = {"distribution": "lognormal", "mean": "1 um", "std": "0.2 um"}
 ON_A_BASE = {"shape": "tabulated", "r": [0.0, 1e-6, 2e-6, 9e-6, 12e-6], "f": [0.0, 0.3e-6, 0.5e-6, 1.2e-6, 3.2e-6]}
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize(
     ("shape", "adhesion"),
     [

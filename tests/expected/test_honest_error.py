@@ -52,6 +52,7 @@ def test_the_judge_finds_forces_that_are_off_by_a_few_stated_errors(number: int)
     assert not study.judge(scene(number), disturbance=-3.0).honest
 
 
+@pytest.mark.large
 def test_orders_that_agree_by_chance_are_not_accepted() -> None:
     """Some punches of many radii have detached: there are kinks over the radii."""
     assert study.judge(scene(44)).honest

@@ -25,6 +25,7 @@ def along(separation, adhesion) -> np.ndarray:
     return rm.run(SCENE | adhesion | {"path": {"separation": separation.tolist()}}).force.values[0]
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("adhesion", [{}, JKR], ids=["elastic", "jkr"])
 def test_the_force_at_the_separation_is_the_load(adhesion) -> None:
     path = {"force": {"start": "0.1 mN", "stop": "5 mN", "steps": 9}, "unload": True}
@@ -37,6 +38,7 @@ def test_the_force_at_the_separation_is_the_load(adhesion) -> None:
     assert (lag[:8] < 0.0).all() if adhesion else np.abs(lag).max() < 1e-12 * 1e-6
 
 
+@pytest.mark.large
 @pytest.mark.parametrize("stiffness", ["1 MN/m", "20 kN/m", "500 N/m"])
 @pytest.mark.parametrize("adhesion", [{}, JKR], ids=["elastic", "jkr"])
 def test_the_spring_bears_the_force(adhesion, stiffness) -> None:
@@ -48,6 +50,7 @@ def test_the_spring_bears_the_force(adhesion, stiffness) -> None:
     np.testing.assert_allclose(force, along(separation, adhesion), rtol=0.0, atol=1e-12 * np.abs(force).max())
 
 
+@pytest.mark.large
 def test_a_large_patch_stands_where_the_expected_law_does() -> None:
     path = {"remote": {"start": "3 um", "stop": "-1 um", "steps": 12}, "machine_stiffness": "20 kN/m", "unload": True}
     batch = {"batch": {"estimator": "stratified", "realizations": 20}}

@@ -33,6 +33,7 @@ def by_separate_fits(measured: pd.DataFrame, mean: float, error: float) -> float
     return abs(float(alone.material_modulus) - mean) / float(np.hypot(own, error))
 
 
+@pytest.mark.few(1)
 @pytest.mark.filterwarnings("ignore::roughmdr.LimitWarning")
 @pytest.mark.parametrize("columns", [STATED, PLAIN], ids=["stated", "unstated"])
 @pytest.mark.parametrize("error", [1.0, 1e4])
@@ -46,7 +47,7 @@ def test_a_prior_that_the_curve_contradicts_is_told(columns: list[str], error: f
     assert "residuals are systematic" in said
 
 
-@pytest.mark.few(1)
+@pytest.mark.large
 @pytest.mark.filterwarnings("ignore::roughmdr.LimitWarning")
 @pytest.mark.parametrize("columns", [STATED, PLAIN], ids=["stated", "unstated"])
 def test_curves_that_do_not_share_a_value_are_told(columns: list[str]) -> None:

@@ -42,6 +42,7 @@ def chosen(fit: Any) -> str:
     return next((name for name in ("dugdale", "jkr") if f'"{name}"' in fit.attrs["scene"]), "none")
 
 
+@pytest.mark.large
 @pytest.mark.parametrize("model", ["dugdale", large("jkr"), large("none")])
 def test_the_right_model_is_chosen(model: str) -> None:
     """And Akaike's criterion is that of the textbook."""
@@ -77,6 +78,7 @@ def test_models_are_told_or_it_is_said_that_they_are_not(model: str) -> None:
     assert right >= 2
 
 
+@pytest.mark.large
 def test_the_command_tells_and_stores_the_comparison(tmp_path: Path) -> None:
     """Without adhesion no parameter is left, and the law is that of Hertz."""
     frame = measured("jkr", 0.01, points=20)
@@ -122,6 +124,7 @@ def test_what_is_wrong_for_one_model_is_so_for_all(free: list[str], options: dic
         rm.fit(frame, scene, free, model="auto", **options)
 
 
+@pytest.mark.large
 @pytest.mark.parametrize(
     ("bounds", "doubt"),
     [({}, 'does not tell adhesion model "jkr"'), large({WORK: (TIP.work, 1.0)}, "is fitted better")],

@@ -10,6 +10,7 @@ import roughmdr as rm
 FAST = 10
 
 
+@pytest.mark.large
 @pytest.mark.parametrize("stated", [False, large(True)], ids=["unstated", "stated"])
 @pytest.mark.parametrize("noise", [large("constant"), "proportional"])
 @pytest.mark.parametrize(

@@ -109,6 +109,7 @@ def test_a_row_without_a_curve_is_refused(tmp_path: Path, missing: Any) -> None:
         rm.fit(tmp_path / "all.csv", TIP.scene(), FREE)
 
 
+@pytest.mark.large
 @pytest.mark.parametrize("curves_a_process", [1, pytest.param(_EACH, marks=pytest.mark.large)])
 def test_the_numbers_are_the_same_for_any_number_of_workers(
     monkeypatch: pytest.MonkeyPatch, curves_a_process: int
@@ -169,6 +170,7 @@ def test_each_file_has_its_own_cantilever() -> None:
         model.along(curve._replace(stiffness=None))
 
 
+@pytest.mark.large
 def test_fits_are_measured_again_on_the_cantilevers_of_their_files(tmp_path: Path) -> None:
     remote = tmp_path / "remote.csv"
     curves()["c.csv"].rename(columns={"separation": "remote"}).to_csv(remote, index=False)
@@ -182,6 +184,7 @@ def test_fits_are_measured_again_on_the_cantilevers_of_their_files(tmp_path: Pat
     assert read_fit(tmp_path / "fits.nc").variables["spring_constant"].attrs["units"] == "N m-1"
 
 
+@pytest.mark.large
 def test_the_command_with_several_files(tmp_path: Path) -> None:
     as_files(tmp_path)
     (tmp_path / "tip.toml").write_text(tomli_w.dumps(TIP.scene()))

@@ -21,7 +21,7 @@ def fit_once(case: Case, factors: dict[str, float], **more: Any) -> xr.Dataset:
     return rm.fit(measured, case.scene, list(case.true), set=case.start(factors), **more)
 
 
-@pytest.mark.few(3)
+@pytest.mark.few(1)
 @pytest.mark.parametrize("factors", [(3.0, 3.0), (3.0, 1 / 3), (1 / 3, 3.0), (1 / 3, 1 / 3)])
 @pytest.mark.parametrize("name", ["adhesive", "elastic", "zero"])
 def test_starts_off_by_three_converge(name: str, factors: tuple[float, float]) -> None:
@@ -46,6 +46,7 @@ def test_on_a_machine() -> None:
         assert inside(fit, key, value)
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("scale", [1e-3, 1e6])
 def test_other_scales_are_fitted_alike(scale: float) -> None:
     """From nanometres to metres, and from pascals to gigapascals."""
@@ -103,6 +104,7 @@ def test_as_another_code_finds_it() -> None:
     assert float(fit.correlation[0, 1]) == pytest.approx(correlation, abs=1e-3)
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize(
     ("free", "combination"),
     [
@@ -226,6 +228,7 @@ def test_without_noise_too() -> None:
     assert "does not tell material.modulus and asperities.radius apart" in fit.warnings
 
 
+@pytest.mark.large
 def test_three_or_more_that_are_not_told_apart() -> None:
     case = CASES["adhesive"]
     force = case.force()

@@ -64,6 +64,7 @@ def test_it_is_run_and_keeps_to_the_conventions(folder: Path) -> None:
     assert done.returncode == 0, done.stdout
 
 
+@pytest.mark.large
 def test_only_a_fit_is_replaced(folder: Path) -> None:
     again = roughmdr("fit", "curve.csv", "scene.toml", "-o", "fit.nc", *FREE, cwd=folder)
     assert again.returncode == 0, again.stderr
@@ -110,6 +111,7 @@ def test_the_picture(folder: Path) -> None:
     figure.savefig(folder / "fit.png")
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize("lost", ["residual", "branch", "adhesion_work_low", "parameter_name", "force_fitted"])
 def test_a_file_that_lacks_something_is_refused(folder: Path, tmp_path: Path, lost: str) -> None:
     with xr.open_dataset(folder / "fit.nc") as fit:

@@ -48,6 +48,7 @@ def test_a_prior_is_one_more_measurement_as_in_scipy() -> None:
     assert found.attrs["intervals"] == "95 %, by the stated errors; with the prior material.modulus = 1.5 ± 0.05 MPa"
 
 
+@pytest.mark.large
 @pytest.mark.parametrize("columns", [STATED, STATED[:2]], ids=["stated", "unstated"])
 def test_little_known_changes_nothing_and_much_decides(columns: list[str]) -> None:
     without = fit(columns)
@@ -58,6 +59,7 @@ def test_little_known_changes_nothing_and_much_decides(columns: list[str]) -> No
     assert float(much.material_modulus_high - much.material_modulus) == pytest.approx(1.96, rel=0.01)
 
 
+@pytest.mark.large
 def test_priors_tell_apart_what_the_curve_does_not() -> None:
     free = [MODULUS, "asperities.radius"]
     start = {"asperities.radius": 1.3e-6}
@@ -69,6 +71,7 @@ def test_priors_tell_apart_what_the_curve_does_not() -> None:
     assert share == pytest.approx(rest + (0.5 * 0.02) ** 2, rel=0.1)  # E goes with R^(-1/2)
 
 
+@pytest.mark.large
 def test_bounds_limit_value_and_interval_and_the_search_begins_within_them() -> None:
     bounds = {MODULUS: ("1.2 MPa", "2 MPa"), OFFSET: ("30 nm", 1e-7)}
     found = fit(bounds=bounds)
@@ -85,6 +88,7 @@ def test_bounds_limit_value_and_interval_and_the_search_begins_within_them() -> 
     assert float(far.material_modulus) == pytest.approx(float(free.material_modulus), rel=1e-6)
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("columns", [STATED, STATED[:2]], ids=["stated", "unstated"])
 @pytest.mark.parametrize("bounds", [("1.5 MPa", "2 MPa"), (2e5, 5e5), (7e5, 7e5 * (1.0 + 1e-5))])
 def test_a_bound_that_is_met_has_the_error_of_the_law_there(columns: list[str], bounds: tuple[Any, Any]) -> None:

@@ -82,7 +82,7 @@ def fit_on_a_gel(
     return rm.fit(measured, tip.scene(), free, set={MODULUS: 1.5e3, WORK: 1e-3} | start)
 
 
-@pytest.mark.few(1)
+@pytest.mark.large
 @pytest.mark.parametrize(("noise", "seed"), [(0.01, 1), large(0.01, 2), large(0.01, 3), (0.001, 1)])
 def test_the_jump_lies_where_the_force_shows_it(noise: float, seed: int) -> None:
     """Loading alone, which hardly tells modulus and work apart: the residual is that of the noise, and no more."""
@@ -128,7 +128,7 @@ def test_the_offset_alone_is_the_best_of_all(seed: int) -> None:
     assert cost(fit.force_fitted.to_numpy()) < min(scanned) * (1.0 + 1e-9)
 
 
-@pytest.mark.few(1)
+@pytest.mark.large
 @pytest.mark.parametrize("free", COMBINATIONS["jkr"], ids="-".join)
 def test_rows_from_last_to_first_are_doubted(free: list[str]) -> None:
     """Unloading that is saved as if it were loading, whose contact is made where it should be lost."""
@@ -142,6 +142,7 @@ def test_rows_from_last_to_first_are_doubted(free: list[str]) -> None:
     assert re.search("read from its last row to its first the curve is fitted better, to 0.4", wrong.attrs["warnings"])
 
 
+@pytest.mark.large
 def test_behind_a_cantilever() -> None:
     """A column of the piezo: its far end comes nearer as it grows, and the tip jumps on and off."""
     tip, steps = Tip("jkr", 1e-7, 1e6), np.linspace(3e-7, -1.5e-7, 60)
@@ -155,6 +156,7 @@ def test_behind_a_cantilever() -> None:
     assert "remote" in fit.coords
 
 
+@pytest.mark.large
 def test_the_error_of_the_law_moves_the_modulus_alike_behind_a_spring() -> None:
     """The modulus takes up an error that is one of all forces at given separation, however soft the spring is."""
     tip, depth = Tip("hertz", 1e-7, 2e6), np.linspace(-1e-7, 1e-7, 60)

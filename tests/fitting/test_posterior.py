@@ -38,6 +38,7 @@ def part_of_law(scene: dict[str, Any], measured: pd.DataFrame) -> float:
     return float(model.law(np.zeros(1)).model_error.curve.max())
 
 
+@pytest.mark.large
 @pytest.mark.parametrize("columns", [STATED, PLAIN], ids=["stated", "unstated"])
 @pytest.mark.parametrize("prior", [None, large(2e4)])
 def test_draws_of_a_modulus_are_those_of_its_density(columns: list[str], prior: float | None) -> None:
@@ -88,6 +89,7 @@ def test_simulated_curves_are_where_their_draws_say(columns: list[str], monkeypa
         assert chisquare(np.bincount(each // 2, minlength=10)).pvalue > 0.01, each
 
 
+@pytest.mark.large
 def test_same_seed_same_draws_and_a_file_holds_them(tmp_path: Path) -> None:
     measured_by(TIP).to_csv(tmp_path / "curve.csv", index=False)
     fits = [rm.fit(tmp_path / "curve.csv", TIP.scene(), [MODULUS], posterior=True) for _ in range(2)]

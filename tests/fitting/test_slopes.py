@@ -71,6 +71,7 @@ CASES = {
 }
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("case", [large(name) if name in ("a sphere", "rough") else name for name in CASES])
 def test_slopes_are_differences_of_the_law(case: str) -> None:
     """With a prior, whose row is behind those of the points; without adhesion pressures are measured."""

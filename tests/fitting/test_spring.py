@@ -39,6 +39,7 @@ def model_on_machine(scene: dict[str, Any], remote: NDArray[np.float64]) -> Mode
     return Model(*scene_to_fit(scene, {}, curve, FREE), FREE)
 
 
+@pytest.mark.large
 @pytest.mark.parametrize(
     ("length", "modulus", "unlike"), [(1e-6, 1e6, False), large(1e-9, 1e11, False), large(1e-3, 1e4, True)]
 )
@@ -56,6 +57,7 @@ def test_slopes_are_those_of_the_law_on_its_machine(length: float, modulus: floa
         assert found[:, number] == pytest.approx(exact, abs=3e-6 * np.abs(exact).max())
 
 
+@pytest.mark.large
 def test_loads_near_known_ones_are_those_of_the_machine() -> None:
     length = 1e-7
     remote = np.concatenate([np.linspace(0.1, -0.1, 10), np.linspace(-0.08, 0.1, 10)]) * length

@@ -40,6 +40,7 @@ def errors(asperities: xr.Dataset, h: np.ndarray, order: int) -> tuple[np.ndarra
     return np.abs(pairs.force.values / exact - 1.0), (pairs.model_error_curve - pairs.slope_error).values
 
 
+@pytest.mark.large
 @pytest.mark.parametrize("unit", [1e-3, 1.0])
 def test_the_first_order_tells_its_own_error_on_a_lattice(unit: float) -> None:
     """From 4 to 35 % contact; the second order would tell a thirtieth of it."""
@@ -51,6 +52,7 @@ def test_the_first_order_tells_its_own_error_on_a_lattice(unit: float) -> None:
     assert (stated <= 3.0 * true).all()
 
 
+@pytest.mark.large
 def test_a_buried_summit_whose_flank_comes_out_within_a_contact_is_told() -> None:
     """Contacts do not overlap; the lower summit widens the higher one's contact to one side."""
     radius, side, apart, lower = 1e3, 1.0, 0.06, 2.5e-6
@@ -137,6 +139,7 @@ def test_a_machine_asks_for_the_errors_of_its_steps_only(monkeypatch: pytest.Mon
         calls.clear()
 
 
+@pytest.mark.large
 @pytest.mark.parametrize(("given", "early"), [({}, True), ({"range": "0.2 um"}, True), ({"range": "5 nm"}, False)])
 def test_the_error_of_an_adhesive_hill_goes_by_whether_it_may_have_jumped_on(
     given: dict[str, str], early: bool, monkeypatch: pytest.MonkeyPatch
@@ -161,6 +164,7 @@ def test_the_error_of_an_adhesive_hill_goes_by_whether_it_may_have_jumped_on(
     np.testing.assert_allclose(stiff.model_error_curve, error, rtol=1e-3)
 
 
+@pytest.mark.large
 def test_a_hill_far_below_a_flat_that_a_dead_load_has_pulled_off_is_in_no_doubt() -> None:
     """A hill that is no paraboloid detaches at another depth than one; the flat has flown away at all steps but one."""
     at = {name: ("asperity", [value], {"units": "m"}) for name, value in {"x": 0.2, "y": 0.5, "height": 0.0}.items()}

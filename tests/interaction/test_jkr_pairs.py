@@ -64,6 +64,7 @@ def follow(
     return Descent(ensemble, units.modulus, units.work, asked).along(separation, set(names.split()))
 
 
+@pytest.mark.large
 def test_a_way_begins_where_one_before_has_been(monkeypatch: pytest.MonkeyPatch) -> None:
     rng, gone = np.random.default_rng(4), list[float]()
     at, z = rng.uniform(0.0, 30.0, (12, 2)), rng.normal(size=12)
@@ -234,7 +235,7 @@ def check_random(seed: int) -> None:
         assert np.linalg.eigvalsh(0.5 * (radii + radii.T)).min() > 0.0
 
 
-@pytest.mark.few(6)
+@pytest.mark.few(1)
 @pytest.mark.parametrize("seed", range(24))
 def test_random_contacts_are_in_stable_equilibrium(seed: int) -> None:
     check_random(seed)
@@ -271,7 +272,7 @@ def check_closed(seed: int) -> None:
     assert found.steps[-1].dissipated == pytest.approx(work, rel=1e-8)
 
 
-@pytest.mark.few(2)
+@pytest.mark.few(1)
 @pytest.mark.parametrize("seed", range(5))
 def test_cycles_close(seed: int) -> None:
     check_closed(seed)
@@ -283,6 +284,7 @@ def test_more_cycles_close(seed: int) -> None:
     check_closed(seed)
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("order", [1, 2])
 def test_stiffness_is_the_slope_of_the_force_as_contacts_come_to_overlap(order: int) -> None:
     """Two contacts at 4 a0 change over from h = -2 d0 on, by differences of the fourth order."""
@@ -298,6 +300,7 @@ def test_stiffness_is_the_slope_of_the_force_as_contacts_come_to_overlap(order: 
     assert found[-1].overlap.contacts == 2
 
 
+@pytest.mark.large
 def test_events_depend_not_on_the_steps_where_contacts_overlap() -> None:
     at, z = [(0, 0), (3, 0), (0, 3), (4, 4), (8, 2)], np.array([0.0, -0.3, -0.6, -1.2, -1.7])
     few = follow(placed(UNIT, at, z), UNIT, [1.0, -2.5, 3.0], order=2)
@@ -310,6 +313,7 @@ def test_events_depend_not_on_the_steps_where_contacts_overlap() -> None:
         assert one.dissipated == pytest.approx(other.dissipated, rel=1e-8)
 
 
+@pytest.mark.large
 def test_events_depend_neither_on_the_steps_nor_on_the_order_of_asperities() -> None:
     at, z = [(0, 0), (5, 0), (0, 5), (6, 6), (11, 2)], np.array([0.0, -0.3, -0.05, -0.2, -0.01])
     few = follow(placed(UNIT, at, z), UNIT, [1.0, -1.0, 2.0], order=2)

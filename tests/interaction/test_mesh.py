@@ -66,7 +66,7 @@ def assert_near(points: Points, side_y: float, periodic: bool, error: float) -> 
     np.testing.assert_allclose(found["potential"], found["of field"], rtol=0.0, atol=1e-12 * found["potential"].max())
 
 
-@pytest.mark.few(5)
+@pytest.mark.few(1)
 @BOUNDARIES
 @pytest.mark.parametrize("error", ERRORS)
 @pytest.mark.parametrize("side_y", SIDES)
@@ -74,13 +74,14 @@ def test_each_within_its_error_of_pairs_summed(side_y: float, error: float, peri
     assert_near(uniform(600, side_y), side_y, periodic, error)
 
 
+@pytest.mark.few(1)
 @BOUNDARIES
 @pytest.mark.parametrize("points", [clustered(500), across_the_edge(500)], ids=["clustered", "across"])
 def test_where_points_lie_does_not_matter(points: Points, periodic: bool) -> None:
     assert_near(points, 1.0, periodic, 3e-7)
 
 
-@pytest.mark.few(6)
+@pytest.mark.few(1)
 @BOUNDARIES
 @pytest.mark.parametrize("error", ERRORS)
 @pytest.mark.parametrize("apart", [0.0, 1e-6, 0.01, 0.5])

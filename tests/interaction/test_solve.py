@@ -109,6 +109,7 @@ def test_far_apart_they_are_independent(boundary: str, order: int) -> None:
     np.testing.assert_allclose(coupled.stiffness, alone.stiffness, rtol=1e-6)
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize("order", [1, 2])
 @pytest.mark.parametrize("count", [60, 700])
 @pytest.mark.parametrize(("length", "modulus"), [(1e-6, 1e12), (1e3, 1.0)])
@@ -127,6 +128,7 @@ def test_other_units_give_the_same_ratios(count: int, length: float, modulus: fl
     np.testing.assert_allclose(second.stiffness / (modulus * length), first.stiffness / 1e6, rtol=1e-5)
 
 
+@pytest.mark.large
 @pytest.mark.parametrize("count", [80, 700])
 def test_the_order_of_the_asperities_and_the_place_of_the_patch_do_not_matter(count: int) -> None:
     made, down = random(count, placement="random"), [1e-6, 0.0, -5e-7]
@@ -139,6 +141,7 @@ def test_the_order_of_the_asperities_and_the_place_of_the_patch_do_not_matter(co
     assert_close(law(turned, down), first, 1e-6)
 
 
+@pytest.mark.large
 @pytest.mark.parametrize("count", [80, 700])
 def test_the_same_bits_twice_and_a_path_has_no_memory(count: int) -> None:
     made, down = random(count), np.linspace(2e-6, -1e-6, 6)
@@ -202,7 +205,7 @@ def test_one_position_for_two_on_opposite_edges_is_refused() -> None:
         law(made, [0.0])
 
 
-@pytest.mark.few(1)
+@pytest.mark.large
 @pytest.mark.parametrize("high", [5, 20])
 def test_low_summits_that_the_others_lift_are_found(high: int, monkeypatch: pytest.MonkeyPatch) -> None:
     """A few summits carry a load that lifts the surface between them to those far below the flat."""
@@ -227,6 +230,7 @@ def all_at_once(candidates: solve.Candidates, lowest: float) -> bool:
     return True
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("order", [1, 2])
 @pytest.mark.parametrize("placement", ["hard_core", "random"])
 @pytest.mark.parametrize("count", [60, 500])

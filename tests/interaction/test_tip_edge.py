@@ -41,6 +41,7 @@ def test_a_tilted_flat_punch(k: float) -> None:
         assert 0.7 * told < error < 1.2 * told
 
 
+@pytest.mark.large
 @settings(deadline=None, max_examples=50)
 @given(st.floats(1e-3, 1.0), st.floats(0.01, 10.0), st.floats(0.0, 10.0))
 def test_the_edge_holds_the_contact_of_least_indentation(share: float, tilt: float, k: float) -> None:
@@ -113,6 +114,7 @@ def three(**changes: object) -> xr.Dataset:
     return ensemble(given.pop("height"), 49.0, "truncated_paraboloid", **place, **given)
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize(
     ("lowest", "separation", "force"),
     [(0.61, 0.5, 1.32238), (0.66, 0.5, 1.35194), (0.28, 0.0, 3.12459), (0.40, 0.0, 3.20662)],

@@ -53,7 +53,7 @@ def control_values(rng: np.random.Generator, exact: JkrPowerLaw, control: str, w
     return [*stable, fold * mp.mpf(rng.random())] if exact.work else stable
 
 
-@pytest.mark.few(6)
+@pytest.mark.few(1)
 @pytest.mark.parametrize("control", CONTROLS)
 @pytest.mark.parametrize("adhesive", [False, True], ids=["elastic", "jkr"])
 @pytest.mark.parametrize("kind", SHAPES)

@@ -34,7 +34,7 @@ works = st.one_of(st.just(0.0), sizes)
 controls = st.builds(lambda size, sign: sign * size, st.one_of(st.just(0.0), sizes), st.sampled_from([1.0, -1.0]))
 
 
-@pytest.mark.few(8)
+@pytest.mark.few(1)
 @compiled
 @pytest.mark.parametrize("control", ["indentation", "force", "contact_radius"])
 @pytest.mark.parametrize("kind", KINDS)
@@ -65,7 +65,7 @@ def test_indent(
     assert (contact.contact_radius >= 0.0).all()
 
 
-@pytest.mark.few(5)
+@pytest.mark.few(1)
 @compiled
 @pytest.mark.parametrize("control", ["displacement", "force"])
 @pytest.mark.parametrize("kind", KINDS)

@@ -8,6 +8,7 @@ from typing import Any, Literal
 import numba
 import numpy as np
 import pytest
+from forms import large_where_compiled
 from hypothesis import example, given, settings, strategies as st
 from scipy.integrate import quad
 
@@ -131,6 +132,7 @@ def test_where_the_contact_lifts_before_it_lets_go() -> None:
     assert (np.diff(radii) > 0.0).all()
 
 
+@large_where_compiled
 @pytest.mark.parametrize("length", [1e-6, 1e3])
 @pytest.mark.parametrize("pressure", [1e-5, 1.0])
 @pytest.mark.parametrize("tabor", [0.1, 2.0])

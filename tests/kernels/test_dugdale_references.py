@@ -143,7 +143,7 @@ def test_at_a_contact_radius(case: Case) -> None:
         compare(case, row, got.isel(contact_radius=i), bounds(case, row, X, sought=False))
 
 
-@pytest.mark.few(24)
+@pytest.mark.few(1)
 @pytest.mark.parametrize("case", CASES)
 @pytest.mark.parametrize("control", CONTROLS)
 def test_on_a_slow_retraction(case: Case, control: Control) -> None:
@@ -165,7 +165,7 @@ def test_on_a_slow_retraction(case: Case, control: Control) -> None:
         compare(case, row, got.isel({quantity: i}), allowed)
 
 
-@pytest.mark.few(24)
+@pytest.mark.few(1)
 @pytest.mark.parametrize("case", CASES)
 @pytest.mark.parametrize("control", CONTROLS)
 def test_pull_off(case: Case, control: Control) -> None:

@@ -50,6 +50,7 @@ def by_quadrature(kernels: ProfileKernels, row: Floats, a: float, c: float) -> F
     return found
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize("name", SHAPES)
 @pytest.mark.parametrize("wide", [0.03, 1.0, 30.0])
 def test_they_are_the_integrals(name: str, wide: float) -> None:

@@ -54,6 +54,7 @@ def test_without_a_nominal_area_the_model_error_is_not_known() -> None:
         )
 
 
+@pytest.mark.large
 @pytest.mark.parametrize("slope", [0.01, 0.1, 0.3])
 def test_the_error_by_slopes_grows_as_their_square(slope: float) -> None:
     made = rm.load_separation(
@@ -88,6 +89,7 @@ def test_jkr_is_off_where_adhesion_reaches_far_whether_its_range_is_told_or_not(
     assert error(1.0, adhesion="dugdale", strength=0.05 / 0.4e-9) == 0.0
 
 
+@pytest.mark.large
 @pytest.mark.parametrize("work", [5e-324, 1e-300, 1e-170, 1e-30])
 def test_an_adhesion_that_is_next_to_nothing_has_an_error_of_next_to_nothing(work: float) -> None:
     """The square of its Tabor number is 0 to a float."""
@@ -96,6 +98,7 @@ def test_an_adhesion_that_is_next_to_nothing_has_an_error_of_next_to_nothing(wor
     assert float(made.adhesion_range_error) < 1e-9
 
 
+@pytest.mark.large
 def test_two_of_the_largest_floats_are_refused_without_their_sum() -> None:
     pair = ensemble([0.0, 0.0], area=1e8, shape="cone", slope=1.7e308)
     with pytest.raises(rm.OutOfRange, match="contact of an asperity is not representable"):

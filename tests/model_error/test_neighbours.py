@@ -71,6 +71,7 @@ def test_a_lone_asperity_of_a_layer_under_a_curved_body_is_one_of_many() -> None
     assert float(made.interaction_error[0]) == pytest.approx(float(interaction_error(np.array(fraction))))
 
 
+@pytest.mark.large
 @settings(deadline=None, max_examples=25)
 @given(st.integers(2, 10), st.integers(0, 2**31), st.floats(1.0, 30.0), st.sampled_from(["paraboloid", "cone"]))
 @example(2, 106097, 1.0, "paraboloid")  # a larger contact takes all that the smaller one bears
@@ -95,6 +96,7 @@ def test_the_error_of_few_is_that_of_their_distances_whatever_the_patch(
         assert (stated[seen] <= 3.0 * true[seen]).all()
 
 
+@pytest.mark.large
 def test_few_at_random_are_as_far_apart_as_expected() -> None:
     """Without positions the error is about the mean over patches of that with positions."""
     table = {"source": "random", "shape": "paraboloid", "count": 5, "patch": "1 mm", "radius": "100 um"}
@@ -130,6 +132,7 @@ def near_pairs(count: int, seed: int) -> xr.Dataset:
     return asperities
 
 
+@pytest.mark.large
 @pytest.mark.parametrize("asperities", [crowd(0.5, 1), crowd(0.6, 3), crowd(0.7, 5), near_pairs(10, 7)])
 def test_the_force_of_a_crowd_is_too_high_by_what_is_stated(asperities: xr.Dataset) -> None:
     """Overlapping contacts and crowded ones are counted twice; the bound is that of boundary elements."""
@@ -149,6 +152,7 @@ def test_the_force_of_a_crowd_is_too_high_by_what_is_stated(asperities: xr.Datas
     assert (stated <= 3.0 * true).all()
 
 
+@pytest.mark.large
 def test_tips_that_a_flat_only_touches_bear_nothing_that_could_be_off() -> None:
     at = np.array([1e-4, 3e-4])
     tips = placed(at, at, np.full(2, 1e-6), 1e-3, shape="truncated_paraboloid", radius=1e-3, flat_radius=1e-5)
@@ -159,6 +163,7 @@ def test_tips_that_a_flat_only_touches_bear_nothing_that_could_be_off() -> None:
     assert (law.model_error_curve.values > 0.0).tolist() == [False, False, True]
 
 
+@pytest.mark.large
 def test_of_a_crowd_the_sign_and_the_remedy_are_told(tmp_path: Path) -> None:
     """Above 100 % it is taken for no hills; hills have no overlap."""
     for number, (asperities, words) in enumerate(

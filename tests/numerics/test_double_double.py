@@ -36,6 +36,7 @@ def relative_error(got: Pair, exact: Number) -> float:
     return float(error / abs(exact)) if error else 0.0
 
 
+@pytest.mark.large
 @given(floats(-300.0, 300.0), floats(-300.0, 300.0))
 @settings(deadline=None)
 def test_two_sum_is_exact(a: float, b: float) -> None:
@@ -44,6 +45,7 @@ def test_two_sum_is_exact(a: float, b: float) -> None:
     assert got[0] == a + b
 
 
+@pytest.mark.large
 @given(floats(-140.0, 145.0), floats(-140.0, 145.0))
 @settings(deadline=None)
 def test_two_product_is_exact(a: float, b: float) -> None:
@@ -52,18 +54,21 @@ def test_two_product_is_exact(a: float, b: float) -> None:
     assert got[0] == a * b
 
 
+@pytest.mark.large
 @given(st.one_of(pairs(-1.0, 1.0), pairs(-130.0, 130.0)), pairs(-130.0, 130.0))
 @settings(deadline=None)
 def test_multiply(x: Pair, y: Pair) -> None:
     assert relative_error(extended.multiply(x, y), value(x) * value(y)) <= 1e-31  # 4.6e-32
 
 
+@pytest.mark.large
 @given(pairs(-130.0, 130.0), st.one_of(pairs(-1.0, 1.0), pairs(-130.0, 130.0)))
 @settings(deadline=None)
 def test_divide(x: Pair, y: Pair) -> None:
     assert relative_error(extended.divide(x, y), value(x) / value(y)) <= 2e-31  # 6.8e-32
 
 
+@pytest.mark.large
 @given(pairs(-20.0, 20.0), pairs(-20.0, 20.0))
 @settings(deadline=None)
 def test_add(x: Pair, y: Pair) -> None:
@@ -78,6 +83,7 @@ def test_add_where_the_leading_digits_cancel(x: Pair, digits: int, tail: float) 
     assert relative_error(extended.add(x, y), value(x) + value(y)) <= 4e-32  # 6.1e-33
 
 
+@pytest.mark.large
 @given(pairs(-280.0, 308.0 - math.log10(2.0)))
 @settings(deadline=None)
 def test_log(x: Pair) -> None:
@@ -85,6 +91,7 @@ def test_log(x: Pair) -> None:
     assert relative_error(extended.log(x), mp.log(value(x))) <= 1.2e-31  # 5.9e-32
 
 
+@pytest.mark.large
 @given(floats(-15.0, -0.4), tails())
 @settings(deadline=None)
 def test_log_near_1(offset: float, tail: float) -> None:
@@ -97,6 +104,7 @@ def test_log_at_the_ends_of_the_range(x: float) -> None:
     assert relative_error(extended.log((x, 0.0)), mp.log(mp.mpf(x))) <= 1.2e-31
 
 
+@pytest.mark.large
 @given(pairs(-8.0, math.log10(300.0)))
 @settings(deadline=None)
 def test_exp(x: Pair) -> None:

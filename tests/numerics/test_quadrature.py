@@ -29,6 +29,7 @@ def test_a_kink_is_found_wherever_it_is(place: float, power: float) -> None:
     assert found == pytest.approx(exact, rel=1e-12)
 
 
+@pytest.mark.large
 @settings(deadline=None, max_examples=30)
 @given(st.floats(1e-8, 1.0 - 1e-8))
 def test_a_jump_is_found_wherever_it_is(place: float) -> None:

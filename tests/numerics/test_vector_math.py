@@ -35,7 +35,7 @@ FUNCTIONS: dict[str, tuple[Callable[[float], float], Callable[[Number], Number],
 }
 
 
-@pytest.mark.few(5)
+@pytest.mark.few(1)
 @pytest.mark.parametrize("name", FUNCTIONS)
 def test_to_a_few_roundings(name: str) -> None:
     function, exact, numbers, roundings = FUNCTIONS[name]

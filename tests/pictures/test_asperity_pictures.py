@@ -88,7 +88,7 @@ def test_the_edge_is_lifted_by_dl_under_jkr() -> None:
     assert float(contact.mdr_profile(np.array([contact.state.radius]))[0]) == pytest.approx(dl, rel=1e-9)
 
 
-@pytest.mark.few(3)
+@pytest.mark.few(1)
 @pytest.mark.parametrize("case", NAMES)
 def test_infinite_pressures_are_marked(case: str) -> None:
     contact, force = contact_of(*CASES[case])
@@ -100,6 +100,7 @@ def test_infinite_pressures_are_marked(case: str) -> None:
     assert edge <= ({"∞"} if case == "punch" else {"−∞"})
 
 
+@pytest.mark.large
 def test_the_asperity_of_a_result_is_the_one_with_the_largest_force() -> None:
     result = ResultView(rm.run(scene(batch=None)))
     figure = draw_asperity(result)
@@ -128,6 +129,7 @@ def test_asperities_out_of_contact_are_refused() -> None:
         )
 
 
+@pytest.mark.large
 def test_one_of_a_pair_is_drawn_with_its_radius_among_others() -> None:
     table = scene()["asperities"] | {"count": 20, "patch": "0.1 mm"}
     path = {"separation": ["2 um", "0.5 um"]}

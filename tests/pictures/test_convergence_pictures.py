@@ -64,6 +64,7 @@ def test_the_note_says_how_many_realisations_an_error_takes(sixteen: ResultView)
     assert f"largest force: 1 % takes about {needed:.0f}, 0.1 % takes" in draw_convergence(sixteen).get_suptitle()
 
 
+@pytest.mark.large
 def test_levels_are_those_of_the_result() -> None:
     asked = result(accuracy={"relative": 0.05, "max_realizations": 40, "method": "sampled"})
     figure = draw_convergence(asked)
@@ -73,6 +74,7 @@ def test_levels_are_those_of_the_result() -> None:
     assert next(value[0] for label, value in levels.items() if "by the model" in label) == model
 
 
+@pytest.mark.large
 @pytest.mark.parametrize(("number", "bands"), [(3, 0), (8, 1)])
 def test_few_cells_are_lines_and_many_a_band(number: int, bands: int) -> None:
     works = [f"{10 + 5 * i} mJ/m^2" for i in range(number)]
@@ -97,6 +99,7 @@ def test_under_a_dead_load_the_separation_converges() -> None:
     assert [ax.get_title() for ax in figure.axes] == ["separation at the largest load, over its range"]
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize(
     ("changes", "message"),
     [
@@ -120,6 +123,7 @@ def test_convergence_is_written_alike_each_time(sixteen: ResultView, tmp_path: P
     assert written[0] == written[1]
 
 
+@pytest.mark.large
 def test_with_a_preload_the_separation_converges() -> None:
     path = {"preload": "1 mN", "steps": 5, "unload": True}
     titles = [ax.get_title() for ax in draw_convergence(result(path=path)).axes]

@@ -39,6 +39,7 @@ def line(figure: Any, panel: int, branch: str) -> np.ndarray:
     return np.asarray(max(lines, key=lambda each: each.get_linewidth()).get_xydata()) * units
 
 
+@pytest.mark.large
 def test_the_mean_is_drawn_in_the_unit_of_the_axis(result: xr.Dataset) -> None:
     figure = rm.plot(result, variables="force")
     assert figure.axes[0].get_ylabel() == "force [mN]"
@@ -50,6 +51,7 @@ def test_the_mean_is_drawn_in_the_unit_of_the_axis(result: xr.Dataset) -> None:
     assert_legible(figure)
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("keep", ["curves", "statistics"])
 def test_a_variable_over_another_and_per_area(keep: str) -> None:
     output = {"variables": ["force", "contact_area", "contact_count"], "keep": keep}
@@ -66,6 +68,7 @@ def test_a_variable_over_another_and_per_area(keep: str) -> None:
     assert counts.axes[0].get_ylabel() == "contacts per area [/mm²]"
 
 
+@pytest.mark.large
 @pytest.mark.parametrize("changes", [{}, {"sweep": {"adhesion.work": [0.01, 0.05]}}])
 def test_the_pull_off_is_marked_per_area(changes: dict[str, Any]) -> None:
     made = rm.run(scene(asperities=FEW, path=CLEAR, **changes))
@@ -76,6 +79,7 @@ def test_the_pull_off_is_marked_per_area(changes: dict[str, Any]) -> None:
     np.testing.assert_allclose(drawn, expected, rtol=1e-9)
 
 
+@pytest.mark.large
 def test_an_exponential_law_has_a_logarithmic_axis_and_one_with_tension_none(
     result: xr.Dataset, without_adhesion: xr.Dataset
 ) -> None:
@@ -119,6 +123,7 @@ def test_many_realisations_are_a_band_and_some_lines(result: xr.Dataset) -> None
     )
 
 
+@pytest.mark.large
 @pytest.mark.parametrize("count", [3, 12])
 def test_few_cells_are_named_and_more_have_a_colour_bar(count: int) -> None:
     sweep = {"adhesion.work": {"linspace": ["10 mJ/m^2", "90 mJ/m^2"], "num": count}}
@@ -130,6 +135,7 @@ def test_few_cells_are_named_and_more_have_a_colour_bar(count: int) -> None:
     assert_legible(figure)
 
 
+@pytest.mark.large
 def test_many_cells_of_several_keys_are_drawn_along_one_and_select_chooses() -> None:
     sweep = {"adhesion.work": [0.01, 0.02, 0.05], "asperities.height.std": {"linspace": [1e-6, 2e-6], "num": 4}}
     made = rm.run(scene(asperities=FEW, batch={"realizations": 2}, sweep=sweep))
@@ -141,7 +147,7 @@ def test_many_cells_of_several_keys_are_drawn_along_one_and_select_chooses() -> 
         np.testing.assert_array_equal(one.get_xydata(), other.get_xydata())
 
 
-@pytest.mark.few(1)
+@pytest.mark.large
 @pytest.mark.parametrize("suffix", ["png", "svg", "pdf"])
 def test_one_result_gives_the_same_file(result: xr.Dataset, tmp_path: Path, suffix: str) -> None:
     for name in ("a", "b"):
@@ -149,6 +155,7 @@ def test_one_result_gives_the_same_file(result: xr.Dataset, tmp_path: Path, suff
     assert (tmp_path / f"a.{suffix}").read_bytes() == (tmp_path / f"b.{suffix}").read_bytes()
 
 
+@pytest.mark.large
 def test_a_style_changes_the_picture_and_is_left_behind(result: xr.Dataset) -> None:
     from matplotlib import rcParams
 
@@ -158,6 +165,7 @@ def test_a_style_changes_the_picture_and_is_left_behind(result: xr.Dataset) -> N
     assert dict(rcParams) == before
 
 
+@pytest.mark.large
 @pytest.mark.parametrize(
     ("options", "says"),
     [
@@ -203,6 +211,7 @@ def test_a_result_without_an_area_has_nothing_per_area(result: xr.Dataset) -> No
         rm.plot(result.drop_vars("nominal_area"), per_area=True)
 
 
+@pytest.mark.large
 def test_a_picture_loads_no_more_numbers_than_it_draws_and_the_command_makes_it(tmp_path: Path) -> None:
     made = rm.run(scene(asperities=FEW, batch={"realizations": 3}), tmp_path / "out.nc")
     done = CliRunner().invoke(
@@ -214,7 +223,7 @@ def test_a_picture_loads_no_more_numbers_than_it_draws_and_the_command_makes_it(
     assert (tmp_path / "a.svg").read_bytes() == (tmp_path / "b.svg").read_bytes()
 
 
-@pytest.mark.few(1)
+@pytest.mark.large
 @pytest.mark.parametrize(
     "path",
     [
@@ -242,6 +251,7 @@ def test_a_single_step_is_a_point() -> None:
     assert any(each.get_marker() == "o" for each in figure.axes[0].get_lines())
 
 
+@pytest.mark.large
 def test_the_legend_of_a_narrow_picture_is_not_cut_off() -> None:
     sweep = {"mode": "zip", "adhesion.work": [0.01, 0.05], "asperities.height.std": ["1 um", "2 um"]}
     assert_legible(rm.plot(rm.run(scene(asperities=FEW, sweep=sweep)), variables="force"))
@@ -268,6 +278,7 @@ def test_two_values_of_one_key_are_refused(tmp_path: Path) -> None:
     assert "adhesion.work has a value already, 0.01" in run.output
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("keep", ["curves", "statistics"])
 @pytest.mark.parametrize("hills", [False, True])
 def test_the_band_of_the_model_error_is_over_the_largest_force_where_the_error_is(
@@ -309,6 +320,7 @@ def test_the_band_of_the_model_error_is_over_the_largest_force_where_the_error_i
         np.testing.assert_array_equal(other.model_error, one.model_error)
 
 
+@pytest.mark.large
 def test_the_stiffness_of_contacts_that_yield_does_not_rise_from_the_turn() -> None:
     path = {"separation": {"start": "3 sigma", "stop": "1 sigma", "steps": 8}, "unload": True}
     asked = scene(asperities=FEW, path=path, adhesion=None, plasticity={"yield_strength": "1 kPa"})

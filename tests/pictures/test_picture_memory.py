@@ -27,6 +27,7 @@ LOADED = {
 SWEPT = {**UNLOADED, "sweep": {"adhesion.work": [0.02, 0.05]}}
 
 
+@pytest.mark.large
 @pytest.mark.parametrize(
     ("changes", "request_", "missing"),
     [

@@ -34,6 +34,7 @@ def small(**changes: Any) -> xr.Dataset:
     return rm.run(scene(**{"asperities": {**ASPERITIES, "count": 100}, "path": path, **changes}))
 
 
+@pytest.mark.large
 def test_a_law_has_the_ends_of_its_mean() -> None:
     law = small()
     y, x, left, right, low, high = ends(drawn(law))
@@ -49,6 +50,7 @@ def test_a_law_has_the_ends_of_its_mean() -> None:
     assert sketch(law.roughmdr.statistics()) == sketch(law)
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize(
     "changes",
     [
@@ -66,6 +68,7 @@ def test_every_path_is_drawn(changes: Mapping[str, Any]) -> None:
     assert len(ends(drawn(small(**changes)))) == 6
 
 
+@pytest.mark.large
 def test_of_many_cells_some_are_drawn_and_failed_runs_are_not() -> None:
     works = {"adhesion.work": {"linspace": ["1 mJ/m^2", "50 mJ/m^2"], "num": 9}}
     law = small(sweep=works)
@@ -105,6 +108,7 @@ def test_nothing_else_is_loaded_for_it() -> None:
     assert ("matplotlib.figure" in sys.modules) == before
 
 
+@pytest.mark.large
 def test_a_figure_shows_itself() -> None:
     figure = rm.plot(small(), variables="force")
     assert figure._repr_png_().startswith(b"\x89PNG")

@@ -26,7 +26,7 @@ def two() -> xr.Dataset:
     return swept({"adhesion.work": WORK, "asperities.height.std": STD})
 
 
-@pytest.mark.few(1)
+@pytest.mark.large
 @pytest.mark.parametrize("keep", ["curves", "statistics"])
 def test_the_pull_off_over_one_key_with_its_error(keep: str) -> None:
     made = swept({"asperities.height.std": STD}, output={"keep": keep, "variables": ["force"]})
@@ -83,6 +83,7 @@ def test_names_are_told_apart_without_a_scale() -> None:
     assert sorted(label.get_text() for label in ax.get_xticklabels()) == ["gumbel_r", "logistic", "normal"]
 
 
+@pytest.mark.large
 def test_keys_swept_together_are_drawn_over_one_of_them() -> None:
     sweep = {"mode": "zip", "adhesion.work": [0.01, 0.03, 0.05], "asperities.radius.mean": [3e-5, 6e-5, 9e-5]}
     made = swept(sweep)
@@ -111,6 +112,7 @@ def test_diagnostics_are_numbers_too(two: xr.Dataset) -> None:
             assert_legible(rm.plot(two, kind="sweep", variables=name))
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize(
     ("options", "says"),
     [

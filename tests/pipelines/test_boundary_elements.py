@@ -18,7 +18,7 @@ def paraboloid(points: int, size: float) -> Floats:
     return -0.5 * (along[:, None] ** 2 + along[None, :] ** 2)
 
 
-@pytest.mark.few(1)
+@pytest.mark.large
 @pytest.mark.few(2)
 @pytest.mark.parametrize("size", PATCHES)
 def test_a_paraboloid_in_a_periodic_patch(size: int) -> None:
@@ -29,6 +29,7 @@ def test_a_paraboloid_in_a_periodic_patch(size: int) -> None:
     assert errors[2] < 5e-4
 
 
+@pytest.mark.large
 def test_other_units_and_a_path_give_the_forces_of_single_steps() -> None:
     unit, rise, modulus = 1e-6, 3e-10, 2e9
     surface = HeightMap(rise * paraboloid(128, 8), 8 * unit, modulus)
@@ -39,6 +40,7 @@ def test_other_units_and_a_path_give_the_forces_of_single_steps() -> None:
         assert pressed.contact_area == pytest.approx(unit**2 * alone.contact_area, rel=0.02)
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("height", [0.9, 0.5, 0.2])
 def test_a_sinusoid_is_westergaards(height: float) -> None:
     """H. M. Westergaard, J. Appl. Mech. 6 (1939) A49: with s = p/p*, p* = pi E* A/wavelength, h/A = 1 - s + s ln s."""

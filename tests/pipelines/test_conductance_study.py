@@ -27,6 +27,7 @@ def test_the_stated_error_holds(studied: CarriedOut) -> None:
     assert float(bounded(studied.result).mean()) >= 0.85
 
 
+@pytest.mark.large
 def test_it_is_told_and_drawn(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """With one of its cases."""
     monkeypatch.setattr(conductance, "QUICK", conductance.QUICK[1:2])

@@ -91,6 +91,7 @@ def test_the_pull_off_is_located_between_the_steps(model: str) -> None:
     assert coarse == pytest.approx(fine, rel=1e-6)
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("model", MODELS)
 def test_nothing_is_gained_on_the_way(model: str) -> None:
     ensemble = Surface(1.0, 25, 7.0).generate(1)

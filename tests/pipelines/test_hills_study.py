@@ -28,6 +28,7 @@ def test_a_map_is_the_same_on_every_grid() -> None:
     np.testing.assert_allclose(case.height(8)[::2, ::2], case.height(4), atol=1e-12 * case.height(4).max())
 
 
+@pytest.mark.large
 def test_hills_of_one_map_are_better_than_summits() -> None:
     result = dataset_of([("isotropic", press(QUICK[0]))])
     for quantity in ("force", "stiffness"):

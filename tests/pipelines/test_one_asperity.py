@@ -99,6 +99,7 @@ def test_the_worst_exponent(result: xr.Dataset) -> None:
     assert (result.held_force > result.flat_force).all()
 
 
+@pytest.mark.large
 def test_every_number_has_a_unit_and_a_name_and_goes_to_a_file(result: xr.Dataset, tmp_path: Path) -> None:
     for name, array in result.variables.items():
         assert array.attrs["long_name"], name

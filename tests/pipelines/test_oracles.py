@@ -17,6 +17,7 @@ def slope(profile: Profile, r: Number) -> Number:
     return mp.fsum(c * r ** mp.mpf(power) for c, power in piece.terms)
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("kind", sorted(set(DRAW) - {"flat_punch", "mdr_table"}))
 def test_g_and_its_integral_are_those_of_the_slope(kind: str) -> None:
     rng = np.random.default_rng(11)

@@ -104,6 +104,7 @@ def test_fits_begin_at_hertz_and_end_fully_plastic() -> None:
     assert fitted("kogut-etsion", yields * 200.0, yields * 200.0 - left, material)[0] < 1e-20 * force
 
 
+@pytest.mark.large
 def test_forces_are_slopes_of_energies_and_springs_have_closed_forms() -> None:
     _, lost = STICKY.ends(DEPTH)
     with mp.workdps(30):
@@ -122,6 +123,7 @@ def test_forces_are_slopes_of_energies_and_springs_have_closed_forms() -> None:
     assert abs(force / (dry.modulus * half * a * (phi - mp.sin(phi) * mp.cos(phi))) - 1) < 1e-30
 
 
+@pytest.mark.large
 def test_without_yield_contacts_are_those_of_jkr() -> None:
     hard = Contact(1e-6, 1e11, 1e10, 0.1)
     twin = JkrPowerLaw(rm.Paraboloid(radius=1e-6), 1e11, 0.1)
@@ -134,6 +136,7 @@ def test_without_yield_contacts_are_those_of_jkr() -> None:
     assert hard.state(2e-9, 2e-9 - tip * 0.9999)[0] < 0
 
 
+@pytest.mark.large
 def test_the_least_adhesion_yields_where_dry_contacts_do() -> None:
     faint = Contact(1e-6, 1e11, 1e4, 1e-24, "paraboloid")
     assert abs(faint.start / faint.onset - 1) < 1e-4

@@ -111,6 +111,7 @@ def results() -> dict[str, xr.Dataset]:
     return {name: rm.run(table) for name, table in SCENES.items()}
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize("name", SCENES)
 def test_the_judge_lets_pass_what_is_right(results: dict[str, xr.Dataset], name: str) -> None:
     assert check(results[name], read(SCENES[name])) > 300

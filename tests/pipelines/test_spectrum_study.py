@@ -10,6 +10,7 @@ from studies.spectrum import METHODS, laws, means
 STUDIED = "spectrum"
 
 
+@pytest.mark.large
 def test_hills_of_one_map_are_nearest() -> None:
     force = {method: law["force"].to_numpy() for method, law in laws(0.8, 1).items()}
     off = {method: np.abs(force[method] / force["boundary elements"] - 1.0).mean() for method in METHODS[:-1]}

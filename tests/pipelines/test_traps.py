@@ -13,6 +13,7 @@ def test_every_kind_of_mistake_is_made_and_the_scenes_are_always_the_same() -> N
     assert made == list(traps(60))
 
 
+@pytest.mark.large
 def test_no_trap_ends_well_with_more_contact_than_patch_or_without_a_line_on_trust(tmp_path: Path) -> None:
     text = STUDY.carry_out(tmp_path, quick=True)
     with xr.open_dataset(tmp_path / "traps.nc") as found:

@@ -24,6 +24,7 @@ PERIODIC = {12: (1.273263599777, 3.6870864041), 6: (1.814344884220, 4.6216698656
 """Side of the patch -> force over 4/3 from a multipole solution, and area."""
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize("distance", PARABOLOIDS)
 def test_two_paraboloids(distance: float) -> None:
     contact = equal_pair(PARABOLOID, distance, degree=6)
@@ -74,6 +75,7 @@ def mdr(exponent: float, power: float) -> float:
     return 2.0 * (1.0 / (power + 1.0) - 1.0 / (power + 1.0 + exponent))
 
 
+@pytest.mark.large
 @pytest.mark.parametrize("exponent", [1.0, 2.0, 3.0, 4.0])
 def test_the_second_moment_of_the_pressure(exponent: float) -> None:
     """∫ p r² dA = 4 E* ∫ x² (delta - g) dx."""
@@ -115,6 +117,7 @@ def test_a_tilt_acts_to_its_order_as_the_coupling_says(exponent: float) -> None:
         assert abs(extrapolated) < 1e-4
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize(("indenter", "rtol"), [(PARABOLOID, 1e-12), (QUARTIC, 2e-7)])
 def test_the_tilted_plane_by_boundary_integrals(indenter: Indenter, rtol: float) -> None:
     """Another way to the solution: r^4 leaves the disc in the second order of the tilt, its load in the fourth."""

@@ -41,6 +41,7 @@ def test_the_estimate_bounds_most_errors_and_is_within_a_factor_of_3(studied: Ca
     assert set(groups(studied.result).ravel()) == {"few contacts", "random", "square", "map"}
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("shape", ["paraboloid", "lognormal", "cone", "quartic"])
 def test_contact_radii_and_separations_are_those_of_the_law(shape: str) -> None:
     asperities = Case("hard_core 0.5", shape, 30, 0.3, 64, 1).generate()

@@ -70,6 +70,7 @@ def test_every_format_holds_the_same_table(files: Path, branch: str) -> None:
     assert document["units"]["pressure"] == "MPa"
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("name", ["hertz", "jkr"])
 @pytest.mark.parametrize("branch", ["loading", "unloading"])
 def test_lines_between_the_points_are_the_law_within_the_error(files: Path, name: str, branch: str) -> None:
@@ -151,6 +152,7 @@ def test_the_mean_of_realisations_with_its_standard_error(tmp_path: Path) -> Non
     assert "mean of 8 realisations" in header_of(tmp_path / "curves.csv")
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("size", [1e-9, 1e-3, 1.0])
 def test_on_every_scale_the_table_is_the_same_in_its_own_units(size: float, tmp_path: Path) -> None:
     """Heights, radii and patch in proportion: pressures are the same, overclosures in proportion."""
@@ -235,6 +237,7 @@ def test_the_contact_fraction_over_the_overclosure(files: Path) -> None:
     assert table["contact_area [1]"].iloc[-1] == pytest.approx(largest, rel=1e-12)
 
 
+@pytest.mark.large
 @pytest.mark.parametrize("mode", ["product", "zip"])
 def test_one_cell_of_a_sweep_is_selected(mode: str, tmp_path: Path) -> None:
     sweep = {"mode": mode, "asperities.height.std": ["1 um", "2 um"], "asperities.radius.mean": ["50 um", "80 um"]}
@@ -340,6 +343,7 @@ def test_nothing_in_a_title_becomes_a_line_of_the_table(files: Path) -> None:
     assert of_json(files / "t.json")["header"]["scene"] == made.attrs["title"]
 
 
+@pytest.mark.large
 def test_contacts_that_yield_have_a_table_of_the_first_loading_and_one_of_what_follows(tmp_path: Path) -> None:
     path = {"separation": {"start": "clear", "stop": "1 sigma", "steps": 150}, "unload": True}
     rm.run(expected(path=path, plasticity={"yield_strength": "30 kPa"}), tmp_path / "yielding.nc")
@@ -371,6 +375,7 @@ int main(void)
 """
 
 
+@pytest.mark.large
 @pytest.mark.skipif(shutil.which("cc") is None, reason="there is no compiler of C")
 @pytest.mark.parametrize("language", [["c", "-std=c99"], ["c++", "-std=c++11"]])
 def test_a_function_in_c_has_the_lines_of_the_table(files: Path, language: list[str]) -> None:

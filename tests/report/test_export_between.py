@@ -152,6 +152,7 @@ REFUSED = {
 }
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("kind", REFUSED)
 def test_a_refused_table_is_written_once_what_is_asked_for_is_done(kind: str, tmp_path: Path) -> None:
     make, says = REFUSED[kind]

@@ -48,6 +48,7 @@ def as_lammps(at: Floats, r: Floats, force: Floats) -> Floats:
     return np.asarray(at * np.interp(at**2, r**2, force / r, right=0.0))
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("branch", ["loading", "unloading"])
 def test_what_lammps_reads_is_the_law_at_the_steps_and_between(file: Path, branch: str) -> None:
     r, _, force = of_lammps(exported(file, f"{branch}.table", branch=branch))
@@ -111,6 +112,7 @@ def test_the_header_tells_loss_tension_and_stiffness(file: Path) -> None:
     assert stiffest == pytest.approx(np.max(-np.diff(force) / np.diff(r)), rel=1e-3)
 
 
+@pytest.mark.large
 def test_each_loop_of_a_path_tells_its_loss(tmp_path: Path) -> None:
     """It is that of a path that comes as far alone, over the overclosure of a loop."""
     far, depths = 6.0, (1.0, 0.5, 0.0)

@@ -46,6 +46,7 @@ def test_no_fewer_knots_would_do(steps: list[float], seed: int, error: float) ->
     assert kept.size <= fewest(x, y, tolerance)
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("scale", [(1e-9, 1e12), (1.0, 1.0), (1e3, 1e-9)])
 @pytest.mark.parametrize("error", [1e-2, 1e-4])
 def test_a_curve_between_its_points_is_as_near_as_was_asked(scale: tuple[float, float], error: float) -> None:
@@ -65,6 +66,7 @@ def test_a_curve_between_its_points_is_as_near_as_was_asked(scale: tuple[float, 
     np.testing.assert_array_equal(kept, knots(t, curve(t), tolerances(curve(t), error) - between / scale[1]))
 
 
+@pytest.mark.large
 def test_knots_grow_as_the_inverse_root_of_the_error() -> None:
     t = np.linspace(0.0, 1.0, 4000)
     counts = [knots(t, np.exp(5.0 * t), tolerances(np.exp(5.0 * t), error)).size for error in (1e-2, 1e-3, 1e-4, 1e-5)]

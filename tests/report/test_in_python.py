@@ -18,6 +18,7 @@ SMALL = scene(asperities=FEW, batch={"realizations": 3})
 SWEEP = {"adhesion.work": ["10 mJ/m^2", "50 mJ/m^2"]}
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("keep", ["curves", "statistics"])
 @pytest.mark.parametrize("cells", [False, True])
 def test_info_is_the_text_that_the_command_prints(tmp_path: Path, keep: str, cells: bool) -> None:
@@ -27,6 +28,7 @@ def test_info_is_the_text_that_the_command_prints(tmp_path: Path, keep: str, cel
     assert rm.info(tmp_path / "out.nc", cells=cells) + "\n" == said.output
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("keep", ["curves", "statistics"])
 def test_info_of_a_dataset_is_that_of_its_file_without_a_size(tmp_path: Path, keep: str) -> None:
     table = {**SMALL, "output": {"keep": keep}, "sweep": SWEEP}
@@ -53,6 +55,7 @@ def test_what_is_no_result_is_refused(given: Any) -> None:
             read(given)
 
 
+@pytest.mark.large
 def test_a_plot_is_a_figure_and_a_file_if_asked_for(tmp_path: Path) -> None:
     result = rm.run(SMALL, tmp_path / "out.nc")
     assert len(rm.plot(result).axes) >= 4

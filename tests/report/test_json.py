@@ -200,6 +200,7 @@ main()
 """
 
 
+@pytest.mark.large
 def test_an_interrupted_run() -> None:
     command = [sys.executable, "-c", _INTERRUPTED, "run", "few.toml", "-o", "out.nc", "--json"]
     done = subprocess.run(command, capture_output=True, text=True, timeout=60, check=False)
@@ -220,6 +221,7 @@ def test_what_cannot_be_printed_is_told_in_one_line() -> None:
         assert len(done.stderr.splitlines()) == 1
 
 
+@pytest.mark.large
 def test_nothing_in_it_reaches_a_terminal_and_any_encoding_holds_it() -> None:
     write("odd.toml", {**FEW, "title": "Reibung von Öl ± 3 µm"})
     environment = {**os.environ, "PYTHONIOENCODING": "ascii"}

@@ -62,6 +62,7 @@ def saved(table: dict[str, object]) -> str:
     return "s.toml"
 
 
+@pytest.mark.large
 def test_every_command_tells_of_the_map(folder: Path) -> None:
     done = command("run", saved(of_map()), "-o", "out.nc")
     judged = "radii right to about 2 %: the map resolves its summits"
@@ -107,6 +108,7 @@ def test_moments_of_a_map_are_the_same_in_blocks_and_of_an_isotropic_surface(mon
             np.testing.assert_allclose(MapWaves.of(rough, None).moments, whole, rtol=1e-12)
 
 
+@pytest.mark.large
 def test_theories_of_a_map_are_those_of_its_moments(folder: Path) -> None:
     plan = make_plan(read(of_map()))
     found = overlay_theory(plan, ["pressure", "contact_fraction"])
@@ -127,6 +129,7 @@ def test_theories_of_a_map_are_those_of_its_moments(folder: Path) -> None:
         assert "m4, and so radii and number of summits, is that of its shortest waves, 2 um" in remark
 
 
+@pytest.mark.large
 def test_theories_and_the_summits_of_a_gaussian_map_agree(folder: Path) -> None:
     """The force on the summits of one map, near that of the law of all maps with its moments."""
     result = rm.run(of_map(path={"separation": ["2 um", "1.5 um"]}))
@@ -168,6 +171,7 @@ def test_the_table_of_cutoffs(folder: Path, adhesion: dict[str, object] | None) 
         assert found == pytest.approx(float(law.pressure[beyond]), rel=2e-3)
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize(
     ("table", "cutoffs", "says"),
     [
@@ -185,6 +189,7 @@ def test_cutoffs_that_are_refused(folder: Path, table: dict[str, object], cutoff
     assert done.exception is None or isinstance(done.exception, SystemExit)
 
 
+@pytest.mark.large
 def test_without_cutoffs_an_output_is_needed_and_with_them_it_may_be_given(folder: Path) -> None:
     done = command("generate", saved(of_map()))
     assert done.exit_code == 2
@@ -193,7 +198,7 @@ def test_without_cutoffs_an_output_is_needed_and_with_them_it_may_be_given(folde
     assert Path("e.nc").exists()
 
 
-@pytest.mark.few(1)
+@pytest.mark.large
 @pytest.mark.skipif(not SHARED.exists(), reason="the measured surfaces are not here")
 @pytest.mark.parametrize(("name", "cutoff"), [("optical.nc", "1.5 um"), ("afm_film.di", "2 nm")])
 def test_the_measured_surfaces(tmp_path: Path, name: str, cutoff: str, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -73,6 +73,7 @@ def linked(request: pytest.FixtureRequest, tmp_path: Path) -> tuple[Path, Path]:
     return link, target
 
 
+@pytest.mark.few(1)
 def test_a_link_stays_one_and_what_it_leads_to_is_written(linked: tuple[Path, Path]) -> None:
     link, target = linked
     found = rm.run(few(), link)
@@ -85,6 +86,7 @@ def test_a_link_stays_one_and_what_it_leads_to_is_written(linked: tuple[Path, Pa
         xr.testing.assert_equal(rm.run(few(), link, resume=False).force, found.force)
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize(("first", "second"), [(0, 1), (1, 0), (0, 0)])
 def test_what_is_kept_is_found_by_way_of_a_link_and_without(
     linked: tuple[Path, Path], first: int, second: int, monkeypatch: pytest.MonkeyPatch
@@ -140,6 +142,7 @@ def test_a_link_that_leads_nowhere_is_refused(tmp_path: Path, leads_to: str, say
     assert (tmp_path / "out.nc").is_symlink()
 
 
+@pytest.mark.large
 def test_links_to_pictures_scenes_and_ensembles_stay(tmp_path: Path) -> None:
     (tmp_path / "scratch").mkdir()
     for name in ("s.toml", "out.nc", "e.nc", "a.png"):
@@ -228,6 +231,7 @@ def test_asperities_are_replaced_unasked_by_the_very_ones_alone(tmp_path: Path, 
     assert command(*generate, "--set", "seed=8")[0] == 2
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize("name", ["out", "out.png", "out.toml.txt", "nc", ".nc", "out.nc.gz", "out.json"])
 def test_the_name_of_an_output_says_what_it_is(tmp_path: Path, name: str) -> None:
     """Before anything is computed: the scene would fail where it is drawn."""
@@ -255,7 +259,7 @@ def test_every_usual_name_of_a_netcdf_file_will_do(tmp_path: Path, name: str) ->
     assert names(tmp_path) == [name]
 
 
-@pytest.mark.few(1)
+@pytest.mark.large
 @pytest.mark.parametrize("suffix", ["png", "pdf", "svg"])
 def test_a_picture_takes_the_place_of_one_of_its_own_format(kinds: Path, suffix: str) -> None:
     for there in ("png", "pdf", "svg"):
@@ -265,6 +269,7 @@ def test_a_picture_takes_the_place_of_one_of_its_own_format(kinds: Path, suffix:
         assert status == (0 if there == suffix else 2), said
 
 
+@pytest.mark.large
 def test_an_input_is_never_replaced(kinds: Path) -> None:
     (kinds / "link.png").symlink_to("out.nc")
     before = {path.name: path.read_bytes() for path in kinds.iterdir()}
@@ -302,7 +307,7 @@ def test_a_name_that_cannot_be_read_again_is_refused_before(kinds: Path) -> None
 # Checksums
 
 
-@pytest.mark.few(1)
+@pytest.mark.large
 @pytest.mark.parametrize("keep", ["curves", "statistics"])
 def test_numbers_that_may_not_be_those_written_are_shown_with_a_warning(keep: str, tmp_path: Path) -> None:
     out, picture = tmp_path / "out.nc", tmp_path / "a.png"
@@ -454,6 +459,7 @@ writer.write_netcdf = write
         assert names(folder) == ["out.nc", "scene.toml"]
 
 
+@pytest.mark.large
 def test_the_room_that_is_had_beforehand_is_enough_and_given_back(tmp_path: Path) -> None:
     """Whatever is in a file: more than is reserved is never written, and no more is kept than is."""
     texts = np.array(["", "a", "ü" * 50, "x" * 3000] * 300, dtype=object)

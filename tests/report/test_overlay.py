@@ -176,6 +176,7 @@ CUT_BACK = {"separation": [2e-6, 0.0, 2e-6, 1e-6]}
 GW, FT, DMT = "greenwood_williamson", "fuller_tabor", "dmt_maugis"
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize(
     ("law", "changes", "reason"),
     [
@@ -269,6 +270,7 @@ def roughmdr(*arguments: str) -> Result:
     return CliRunner().invoke(main, arguments, catch_exceptions=False)
 
 
+@pytest.mark.large
 def test_a_picture_names_its_laws_and_the_command_says_the_rest(tmp_path: Path) -> None:
     result, picture = tmp_path / "out.nc", tmp_path / "out.svg"
     rm.run(scene(asperities=SUMMITS, batch={"realizations": 2}, path=WAY), result)

@@ -53,7 +53,7 @@ def written(tmp_path: Path, **changes: Any) -> tuple[Page, str]:
     return Page(text), text
 
 
-@pytest.mark.few(1)
+@pytest.mark.large
 @pytest.mark.parametrize(
     "changes",
     [
@@ -88,7 +88,7 @@ def test_a_page_holds_all_of_it_and_needs_no_other_file(tmp_path: Path, changes:
     assert "prefers-color-scheme: dark" in text
 
 
-@pytest.mark.few(1)
+@pytest.mark.large
 @pytest.mark.parametrize("curves", [1, 2])
 def test_a_fit_has_a_page_too(tmp_path: Path, curves: int) -> None:
     tip, free = Tip("hertz", 1e-6, 1e5), ["material.modulus", "offset"]
@@ -126,6 +126,7 @@ def test_the_same_result_gives_the_same_page_which_is_replaced_and_nothing_else_
     rm.write_report(tmp_path / "out.nc", tmp_path / "notes.html", fresh=True)
 
 
+@pytest.mark.large
 def test_nothing_in_a_scene_becomes_a_part_of_the_page(tmp_path: Path) -> None:
     page, text = written(tmp_path, title="<script>alert(1)</script> & <b>bold</b>")
     assert page.open == []

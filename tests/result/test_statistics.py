@@ -25,6 +25,7 @@ def kept(keep: str, **changes: Any) -> xr.Dataset:
     return rm.run(scene(output={"variables": EVERY, "keep": keep}, conduction=CONDUCTION, **changes))
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("sweep", [None, SWEEP])
 def test_they_are_the_statistics_of_the_curves(sweep: dict[str, Any] | None) -> None:
     curves, statistics = kept("curves", sweep=sweep), kept("statistics", sweep=sweep)
@@ -86,6 +87,7 @@ def test_the_bits_do_not_depend_on_workers() -> None:
 PULL_OFF = ("force", "separation", "contacts", "contact_area", "pressure", "contact_fraction")
 
 
+@pytest.mark.large
 def test_the_pull_off_of_curves_and_of_statistics() -> None:
     path = {"separation": {"start": "3.6 sigma", "stop": "-0.5 sigma", "steps": 40}, "unload": True}
     curves, statistics = (kept(keep, sweep=SWEEP, path=path) for keep in ("curves", "statistics"))
@@ -114,6 +116,7 @@ def test_the_pull_off_of_curves_and_of_statistics() -> None:
     np.testing.assert_allclose(curves.pull_off_pressure * area, curves.pull_off_force, rtol=1e-12)
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("keep", ["curves", "statistics"])
 def test_unloadings_that_end_in_contact_do_not_enter(keep: str) -> None:
     path = {"separation": {"start": "2.9 sigma", "stop": "1 sigma", "steps": 30}, "unload": True}
@@ -153,6 +156,7 @@ def test_it_is_there_where_the_force_is_not_asked_for() -> None:
     np.testing.assert_array_equal(found.pull_off_force, kept("curves").pull_off_force)
 
 
+@pytest.mark.large
 @settings(deadline=None, max_examples=100)
 @given(st.lists(st.floats(-1e3, 1e3) | st.just(math.nan), min_size=1, max_size=40), st.randoms())
 def test_moments_of_numbers_that_some_lack_have_the_same_bits_in_any_order(values: list[float], order: Any) -> None:
@@ -191,6 +195,7 @@ STICKY = {
 }
 
 
+@pytest.mark.large
 @pytest.mark.filterwarnings("ignore::roughmdr.errors.LimitWarning")
 def test_curves_statistics_and_the_expected_law_give_one_pull_off_of_a_sticky_film() -> None:
     curves, statistics = rm.run(STICKY), rm.run({**STICKY, "output": {"keep": "statistics"}})

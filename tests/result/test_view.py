@@ -53,6 +53,7 @@ def test_statistics_are_their_own_means() -> None:
     assert not result.holds("pull_off_force")
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("keep", ["curves", "statistics"])
 @pytest.mark.parametrize("path", [{"separation": ["3 um", "1 um", "3 um", "2 um"]}, {"preload": "1 mN", "steps": 4}])
 def test_arrays_a_dataset_and_one_in_chunks_are_read_alike(keep: str, path: dict[str, object]) -> None:

@@ -78,6 +78,7 @@ def test_a_forked_process_computes_too() -> None:
     assert done.stdout.strip() == "0", done.stderr
 
 
+@pytest.mark.large
 def test_a_process_that_may_have_no_children_says_so() -> None:
     with multiprocessing.get_context("spawn").Pool(1) as pool, pytest.raises(rm.RoughmdrError, match="daemonic"):
         pool.apply(rm.run, (few(),), {"scheduler": "processes"})
@@ -123,6 +124,7 @@ def test_no_force_yet_is_no_small_error() -> None:
     assert "none of 40 realisations had any force" in never.attrs["warnings"]
 
 
+@pytest.mark.large
 def test_parts_of_cells_that_are_not_asked_for_stay(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     out, sweep = tmp_path / "out.nc", {"adhesion.work": [0.01, 0.02, 0.05]}
     whole = few(10, sweep=sweep)
@@ -144,6 +146,7 @@ def test_a_cluster_that_is_not_there_costs_nothing(tmp_path: Path, monkeypatch: 
     assert sorted(path.name for path in store_folder(out).iterdir()) == before
 
 
+@pytest.mark.large
 def test_parts_on_another_disk(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     elsewhere = Path("/dev/shm") / f"roughmdr-{os.getpid()}"
     if not elsewhere.parent.is_dir() or elsewhere.parent.stat().st_dev == tmp_path.stat().st_dev:
@@ -158,6 +161,7 @@ def test_parts_on_another_disk(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) 
         elsewhere.rmdir()
 
 
+@pytest.mark.large
 def test_a_disk_without_locks_will_do(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     import fcntl
 
@@ -189,6 +193,7 @@ def test_a_pipe_for_a_manifest_is_refused(tmp_path: Path) -> None:
 FIRST = {"scene": "= no TOML", "versions": "1", "replaces": ""}
 
 
+@pytest.mark.large
 @pytest.mark.parametrize("line", ["[" * 100_000, json.dumps(FIRST), "5", "{}"])
 def test_odd_lines_of_a_manifest(line: str, tmp_path: Path) -> None:
     store_folder(tmp_path / "out.nc").mkdir()
@@ -205,6 +210,7 @@ CHANGES: dict[str, Any] = {
 }
 
 
+@pytest.mark.large
 @pytest.mark.parametrize("change", CHANGES)
 def test_a_result_that_was_changed_is_not_used_again(change: str, tmp_path: Path) -> None:
     out = tmp_path / "out.nc"
@@ -213,6 +219,7 @@ def test_a_result_that_was_changed_is_not_used_again(change: str, tmp_path: Path
         rm.run(few(), out)
 
 
+@pytest.mark.large
 def test_a_result_in_the_classic_format_is_refused(tmp_path: Path) -> None:
     out = tmp_path / "out.nc"
     rm.run(few()).to_netcdf(out, format="NETCDF3_64BIT")

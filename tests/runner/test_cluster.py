@@ -102,7 +102,7 @@ def test_the_same_bits_from_a_cluster(two: Dask, keep: str, runs_per_task: int, 
     )
 
 
-@pytest.mark.few(2)
+@pytest.mark.few(1)
 @pytest.mark.parametrize(
     ("scheduler", "workers"), [("threads", 1), ("threads", 2), ("threads", 3), ("processes", 2), ("processes", 3)]
 )
@@ -280,6 +280,7 @@ def certified(folder: Path) -> list[str]:
     return [text for option, name in names.items() for text in (f"--tls-{option}", str(folder / name))]
 
 
+@pytest.mark.large
 @pytest.mark.skipif(shutil.which("openssl") is None, reason="openssl makes the certificates")
 def test_encrypted(tmp_path: Path, folder: Path, curves: xr.Dataset) -> None:
     options = certified(tmp_path)

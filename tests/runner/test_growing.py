@@ -82,6 +82,7 @@ def files(store: Path) -> dict[str, Any]:
     return found | {"zarr.json": root}
 
 
+@pytest.mark.large
 @pytest.mark.parametrize(
     ("swept", "size"), [(False, 8), (True, 30), large(True, 8), large(True, 100), large(True, 2**18)]
 )
@@ -119,6 +120,7 @@ def test_it_is_file_by_file_the_store_that_is_written_at_once(
         assert grown[name] == content, name
 
 
+@pytest.mark.large
 def test_it_can_be_read_while_the_batch_runs(folder: Path, expected: xr.Dataset) -> None:
     with running(started(folder)) as batch:
         until(lambda: len(chunks(folder)) >= 2 or batch.process.poll() is not None)

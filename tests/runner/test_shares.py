@@ -50,6 +50,7 @@ def all_runs() -> RunRange:
     return Rounds(make_plan(read(scene()))).begin()[0]
 
 
+@pytest.mark.large
 @given(
     counts=st.lists(st.integers(1, 40), min_size=1, max_size=12), total=st.integers(1, 60), first=st.integers(0, 1000)
 )
@@ -68,6 +69,7 @@ def test_what_is_no_part_is_refused(tmp_path: Path, text: str) -> None:
     assert f"part is {text!r}; it must be" in refused(compute(tmp_path, text))
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize(
     ("keep", "total"),
     [("curves", 4), ("statistics", 4), large("statistics", 7), large("curves", 1), large("curves", 20)],
@@ -119,6 +121,7 @@ def test_at_once_and_killed_at_random(tmp_path: Path, keep: str, total: int, req
     assert_clean(folder)
 
 
+@pytest.mark.large
 def test_parts_that_are_missing_or_not_done_are_named(tmp_path: Path) -> None:
     write_scene(tmp_path, SWEPT)
     out = tmp_path / "out.nc"
@@ -142,6 +145,7 @@ def test_parts_that_are_missing_or_not_done_are_named(tmp_path: Path) -> None:
     assert "no part of it is here, and the file is there: is it joined already?" in refused(roughmdr("join", out))
 
 
+@pytest.mark.large
 def test_parts_of_other_batches_are_refused(tmp_path: Path) -> None:
     write_scene(tmp_path, SWEPT)
     out = tmp_path / "out.nc"
@@ -159,6 +163,7 @@ def test_parts_of_other_batches_are_refused(tmp_path: Path) -> None:
     assert roughmdr("join", out).exit_code == 0
 
 
+@pytest.mark.large
 def test_more_realisations_are_those_of_one_run_of_all(tmp_path: Path) -> None:
     """Parts that are computed again under a scene that asks for more go on, and the result is that of the new scene."""
     more = SWEPT | {"batch": {"realizations": 9}}
@@ -176,6 +181,7 @@ def test_more_realisations_are_those_of_one_run_of_all(tmp_path: Path) -> None:
     assert_clean(parts)
 
 
+@pytest.mark.large
 def test_a_result_that_is_there_is_extended_or_refused(tmp_path: Path) -> None:
     write_scene(tmp_path, SWEPT)
     out = tmp_path / "out.nc"

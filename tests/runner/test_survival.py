@@ -72,6 +72,7 @@ def resume(folder: Path, capsys: pytest.CaptureFixture[str], base: xr.Dataset) -
 # Killed
 
 
+@pytest.mark.large
 @pytest.mark.parametrize(("keep", "kills"), [("curves", 3), large("curves", 14), large("statistics", 6)])
 def test_killed_again_and_again_it_comes_to_the_same_bits(
     tmp_path: Path, keep: str, kills: int, request: pytest.FixtureRequest

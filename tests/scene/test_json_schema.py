@@ -39,6 +39,7 @@ def faults(table: dict[str, Any]) -> list[str]:
     return [error.message for error in VALIDATOR.iter_errors(table)]
 
 
+@pytest.mark.large
 def test_it_is_a_schema_of_its_draft() -> None:
     assert SCHEMA["$schema"] == "https://json-schema.org/draft/2020-12/schema"
     jsonschema.Draft202012Validator.check_schema(SCHEMA)
@@ -64,7 +65,7 @@ def told(mutation: Mutation) -> bool:
     return mutation.what not in (*_NOT_TOLD, "negative") and not anything and not left_out
 
 
-@pytest.mark.few(2)
+@pytest.mark.few(1)
 @pytest.mark.parametrize("base", FEW_AND_ALL)
 def test_one_thing_wrong_is_refused(base: str) -> None:
     for mutation in [each for each in ALL if each.base == base and told(each)]:
@@ -192,6 +193,7 @@ def test_no_table_of_it_takes_any_key() -> None:
     check({name: value for name, value in SCHEMA.items() if name != "then"})
 
 
+@pytest.mark.large
 @given(data=st.data())
 def test_the_pattern_of_a_quantity_is_what_is_read(data: st.DataObject) -> None:
     dimension = data.draw(st.sampled_from([*_BASES, DIMENSIONLESS]))

@@ -407,7 +407,7 @@ def value_is_declared(key: str) -> bool:
     return not any(first(key).startswith(f"asperities.{name}.") for name in ("height", "radius", "terms"))
 
 
-@pytest.mark.few(4)
+@pytest.mark.large
 @pytest.mark.parametrize("base", FEW_AND_ALL)
 def test_one_thing_wrong_is_refused_at_its_line(folder: Path, base: str) -> None:
     for mutation in [each for each in ALL if each.base == base]:
@@ -451,7 +451,7 @@ def assert_no_hint_suggests_what_was_given(folder: Path, table: dict[str, Any]) 
                 assert not {fault.key, fault.key.rpartition(".")[2], fault.value.strip("'")} & set(meant), fault
 
 
-@pytest.mark.few(6)
+@pytest.mark.few(1)
 @pytest.mark.parametrize(("base", "at"), [(base, at) for base in ("every section", "moments") for at in tables(base)])
 def test_no_hint_suggests_a_key_that_stands_elsewhere(folder: Path, base: str, at: str) -> None:
     for key in KEYS:

@@ -93,6 +93,7 @@ def test_a_run_holds_the_law_of_the_body(tmp_path: Path) -> None:
     np.testing.assert_array_equal(again.force, result.force)
 
 
+@pytest.mark.large
 def test_a_sweep_of_radii_is_the_same_for_any_number_of_workers() -> None:
     table = curved(
         adhesion={"model": "jkr", "work": "1 mJ/m^2"},
@@ -141,6 +142,7 @@ def test_its_paper_is_cited() -> None:
     assert "rough spheres" not in rm.cite(read(scene()))
 
 
+@pytest.mark.large
 def test_laws_of_a_flat_are_not_taken_for_that_of_a_body(tmp_path: Path) -> None:
     result = rm.run(curved())
     with pytest.raises(rm.StoreError, match=r"this scene has .nominal."):
@@ -159,6 +161,7 @@ def test_a_steep_body_and_one_on_few_asperities_are_warned_of() -> None:
     assert float(steep.edge_slope.max()) >= 0.5 > float(gentle.edge_slope.max())
 
 
+@pytest.mark.large
 def test_a_fit_finds_the_radius_of_the_asperities() -> None:
     made = rm.run(curved(nominal={"radius": "10 mm", "error": 1e-3}))
     loading = made.isel(realization=0).where(made.branch == "loading", drop=True)

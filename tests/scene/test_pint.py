@@ -72,6 +72,7 @@ def test_scenes_and_functions_take_them() -> None:
     np.testing.assert_array_equal(*depths)
 
 
+@pytest.mark.large
 def test_asperities_fits_and_exports_take_them(tmp_path: Path) -> None:
     lengths = ("1 mm", "50 um"), (1 * CF.mm, np.float64(50.0) * PINT.um)
     made = [rm.generate({**ASPERITIES, "patch": patch, "radius": radius}, seed=1) for patch, radius in lengths]

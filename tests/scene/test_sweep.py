@@ -69,6 +69,7 @@ def test_any_number_or_name_can_be_swept(key: str, values: list[Any], unit: str 
         assert_cell(result.isel({name: i}), single(table, {key: value}))
 
 
+@pytest.mark.large
 def test_zip_is_one_dimension_with_the_swept_keys_beside_it(tmp_path: Path) -> None:
     axes = {"adhesion.work": [0.05, 0.01, 0.05], "asperities.count": [10, 60, 30]}
     table = swept(axes, "zip", asperities={**SMALL, "shape": "sphere"})
@@ -90,7 +91,7 @@ def test_cells_share_their_draws() -> None:
     np.testing.assert_array_equal(result.contact_count[0], result.contact_count[1])
 
 
-@pytest.mark.few(3)
+@pytest.mark.few(1)
 @pytest.mark.parametrize("runs_per_task", [1, 4, 5, 12])
 @pytest.mark.parametrize("workers", [1, 3])
 def test_bits_do_not_depend_on_how_cells_are_split_into_tasks(runs_per_task: int, workers: int) -> None:
@@ -153,6 +154,7 @@ def test_maps_can_be_swept(tmp_path: Path) -> None:
     assert float(result.force.isel(asperities_file=1).max()) > float(result.force.isel(asperities_file=0).max())
 
 
+@pytest.mark.large
 @settings(deadline=None, max_examples=100)
 @given(first=st.floats(1e-9, 1e3), last=st.floats(1e-9, 1e3), num=st.integers(2, 40), kind=st.sampled_from("lin log"))
 def test_values_between_two_ends(first: float, last: float, num: int, kind: str) -> None:

@@ -72,6 +72,7 @@ def t_of(name: str, a: float, number: float) -> float:
     return 0.0 if flat else float(profile.t_of_radius(a, 1.0, (number, 0.0)))
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("name", PROFILES)
 def test_they_are_the_integrals(name: str) -> None:
     rng = np.random.default_rng(sorted(PROFILES).index(name))

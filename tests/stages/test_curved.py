@@ -99,6 +99,7 @@ def test_it_is_the_twin_by_ring_kernels(sigmas: float) -> None:
     assert found.variables["nominal_contact_radius"][-1] == pytest.approx(radius, rel=1e-6)
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("error", [1e-3, 1e-5])
 def test_the_stated_error_holds(error: float) -> None:
     separation = np.linspace(4.0, -8.0, 7) * STD
@@ -107,7 +108,7 @@ def test_the_stated_error_holds(error: float) -> None:
     assert off <= found.numerical_error <= 2.0 * error
 
 
-@pytest.mark.few(6)
+@pytest.mark.few(1)
 @pytest.mark.parametrize("slope", [0.1, 0.5])
 @pytest.mark.parametrize("error", [1e-2, 1e-3, 1e-4])
 @pytest.mark.parametrize("tip", [1e-9, 2e-9, 3e-9])
@@ -134,6 +135,7 @@ def test_the_stated_error_holds_where_a_profile_has_a_kink(tip: float, slope: fl
         assert found.numerical_error <= 2.0 * error
 
 
+@pytest.mark.large
 def test_a_smooth_layer_is_hertz_to_the_first_order_of_its_roughness() -> None:
     approach, off = 1e-6, []
     for std in (1e-7, 1e-8, 1e-9):
@@ -185,7 +187,7 @@ def test_the_stiffness_is_the_slope_of_the_force() -> None:
         assert stiffness[2] == pytest.approx((force[3] - force[1]) / (2.0 * step), rel=1e-5)
 
 
-@pytest.mark.few(1)
+@pytest.mark.large
 @pytest.mark.parametrize(("alpha", "low", "high"), [(0.04, 0.93, 1.0), (1.0, 0.4, 0.75)])
 @pytest.mark.parametrize("mu", [4.0, large(17.0)])
 def test_the_peak_pressure_after_greenwood_and_tripp(alpha: float, low: float, high: float, mu: float) -> None:
@@ -244,6 +246,7 @@ def test_a_drawn_radius_takes_few_nodes(work: float) -> None:
     assert solution.rule_error < 1e-6
 
 
+@pytest.mark.large
 def test_adhesion_has_hysteresis_and_detaches() -> None:
     found = law(np.linspace(6.0, -3.0, 25) * STD, modulus=1e7, work=0.05, error=1e-3, unload=True)
     force = found.variables["force"]
@@ -261,6 +264,7 @@ def test_unloading_with_adhesion_remembers_and_reloads_alike() -> None:
     assert force[4] == pytest.approx(force[2], rel=1e-9)
 
 
+@pytest.mark.large
 def test_roughness_lowers_pull_off() -> None:
     tension = []
     for std in (0.5e-7, 1e-7, 2e-7):

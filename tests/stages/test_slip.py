@@ -120,6 +120,7 @@ def test_any_path_is_that_of_sliding_springs(steps: list[int]) -> None:
     assert errors[1][0] <= max(0.2 * errors[0][0], 1e-6)
 
 
+@pytest.mark.large
 def test_nothing_is_lost_where_contacts_stick_or_slide_at_once() -> None:
     """Flat punches of one height: T = 2 G* b u up to mu F, then mu F, and no loss but the work of sliding."""
     radii = np.array([1e-6, 3e-6])

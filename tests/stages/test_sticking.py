@@ -81,6 +81,7 @@ def test_the_bound_is_reached_by_two_in_line(poisson: float) -> None:
         assert abs(ratio * normal / true - 1.0) == pytest.approx(abs(1.0 - ratio) * lowered, rel=1e-9, abs=1e-14)
 
 
+@pytest.mark.large
 @pytest.mark.parametrize(
     "changes",
     [

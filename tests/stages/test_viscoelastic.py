@@ -61,7 +61,7 @@ def test_a_cone_pressed_at_constant_speed() -> None:
     np.testing.assert_allclose(found, CONE * speed**2 * (0.2 * t**2 + memory), rtol=1e-12)
 
 
-@pytest.mark.few(1)
+@pytest.mark.large
 @pytest.mark.parametrize(
     ("shape", "parameters", "coefficient", "exponent"),
     [("paraboloid", {"radius": RADIUS}, SPHERE, 1.5), ("cone", {"slope": SLOPE}, CONE, 2.0)],
@@ -161,6 +161,7 @@ def bodies(draw: st.DrawFn) -> Viscoelasticity:
     return body(list(zip(shares, times, strict=True)), speed, back, draw(st.sampled_from([0.0, 1e-3, 10.0])))
 
 
+@pytest.mark.large
 @settings(deadline=None, max_examples=20)
 @given(bodies())
 def test_unloading_bears_less_than_loading_and_relaxation_less_than_elasticity(of: Viscoelasticity) -> None:

@@ -143,7 +143,7 @@ def read(data: Labelled, of: Callable[[Labelled], Labelled], readers: dict[str, 
             assert not undefined(said), (change, name)
 
 
-@pytest.mark.few(1)
+@pytest.mark.large
 @pytest.mark.parametrize("name", ["curves", *(large(name) for name in SCENES | LARGE if name != "curves")])
 def test_every_array_and_attribute_in_turn(name: str) -> None:
     data = made(name)
@@ -164,6 +164,7 @@ def fit(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory
     return file
 
 
+@pytest.mark.large
 def test_every_array_and_attribute_of_a_fit_in_turn(fit: Path) -> None:
     with xr.open_dataset(fit) as stored:
         data = Labelled.of(stored.load())
@@ -191,6 +192,7 @@ def test_all_that_is_declared_has_a_form() -> None:
         assert array.attrs.get("units", "") == forms[name].units
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize("keep", ["curves", "statistics"])
 @pytest.mark.parametrize("estimator", ["sampled", "expected"])
 @pytest.mark.parametrize("adhesion", [None, {"model": "jkr", "work": "1 nJ/m^2"}])
@@ -234,6 +236,7 @@ def test_a_fit_is_held_to_its_checksum(fit: Path, tmp_path: Path, change: Callab
     assert not unchanged.stderr
 
 
+@pytest.mark.large
 def test_what_users_do_with_xarray_is_read(tmp_path: Path) -> None:
     """A copy is as it was written, notes of one's own included; a part is read, and is said to be another."""
     out, copy = tmp_path / "out.nc", tmp_path / "copy.nc"

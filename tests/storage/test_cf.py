@@ -63,7 +63,7 @@ def written(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFac
     return sorted(folder.glob("*.nc"))
 
 
-@pytest.mark.few(1)
+@pytest.mark.large
 def test_the_checker_finds_nothing(written: list[Path]) -> None:
     assert len(written) in (2, len(RESULTS) + 5)
     checker = Path(sys.executable).with_name("compliance-checker")

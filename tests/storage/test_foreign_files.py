@@ -40,6 +40,7 @@ def test_no_change_of_a_result_leads_to_a_traceback(
         checked(command.format(name))
 
 
+@pytest.mark.large
 @settings(deadline=None, max_examples=EXAMPLES)
 @given(
     name=st.sampled_from(["ensemble", "table", "map"]),
@@ -104,7 +105,7 @@ KNOWN: list[tuple[str, list[Callable[[Content], None]], str, str]] = [
 ]
 
 
-@pytest.mark.few(12)
+@pytest.mark.few(1)
 @pytest.mark.parametrize(("name", "changed", "command", "says"), KNOWN)
 def test_what_is_wrong_is_said(
     folder: Path, name: str, changed: list[Callable[[Content], None]], command: str, says: str
@@ -123,6 +124,7 @@ def test_the_first_run_that_failed_is_named(folder: Path) -> None:
     assert re.search(r"4 of 8 runs failed \(adhesion_work = 10 mJ/m\^2, .*, realisation 0: OutOfRange: ", said)
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("name", RESULTS)
 def test_a_result_all_of_whose_runs_failed_is_told(folder: Path, name: str) -> None:
     content = content_of(Path(f"{name}.nc"))

@@ -48,6 +48,7 @@ def test_it_is_one_flat_netcdf_4_file(result: xr.Dataset, tmp_path: Path) -> Non
         assert "_FillValue" not in file["separation"].ncattrs()
 
 
+@pytest.mark.large
 def test_an_old_file_is_replaced(result: xr.Dataset, tmp_path: Path) -> None:
     with pytest.raises(rm.StoreError, match="seed was 7, is 8: give another output, or --fresh"):
         rm.run(scene(seed=8), tmp_path / "out.nc")
@@ -95,6 +96,7 @@ def test_what_is_no_result_is_refused(tmp_path: Path) -> None:
         read_result(tmp_path / "other.nc")
 
 
+@pytest.mark.large
 def test_statistics_of_which_one_is_left_are_refused(statistics: xr.Dataset) -> None:
     groups = [[each for each in statistics_of(name) if each in statistics] for name in LAW_VARIABLES]
     for here in filter(None, groups):
@@ -119,6 +121,7 @@ while True:
 """
 
 
+@pytest.mark.large
 @pytest.mark.parametrize("pause", [*map(large, [0.0, 0.011, 0.037, 0.053]), 0.023])
 def test_a_killed_run_leaves_a_whole_file_or_none(tmp_path: Path, pause: float) -> None:
     """Killed at once, at some moment of the second or third writing; what bears the name must be whole."""

@@ -48,6 +48,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return here
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("name", ["out.zarr", "old.zarr"])
 def test_it_holds_what_the_netcdf_file_holds(folder: Path, name: str) -> None:
     stored, expected = (read_result(folder / each) for each in (name, "out.nc"))
@@ -99,6 +100,7 @@ def test_commands_read_it(folder: Path, command: str, monkeypatch: pytest.Monkey
     assert len(lines[0]) == len(lines[1])
 
 
+@pytest.mark.large
 def test_a_run_goes_on_from_it(tmp_path: Path) -> None:
     table = scene(batch={"realizations": 3})
     rm.run(table, tmp_path / "out.zarr")
@@ -111,6 +113,7 @@ def test_a_run_goes_on_from_it(tmp_path: Path) -> None:
     assert {path.name for path in tmp_path.iterdir()} == {"out.nc", "out.zarr"}
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("mine", ["notes.txt", "figures/one.png"])
 def test_what_else_lies_in_it_is_not_lost(tmp_path: Path, mine: str) -> None:
     out = tmp_path / "out.zarr"
@@ -137,6 +140,7 @@ def test_a_folder_that_is_no_store_is_told(tmp_path: Path) -> None:
         read_result(tmp_path / "out.zarr")
 
 
+@pytest.mark.large
 def test_what_a_killed_writer_left_is_in_nobodys_way(tmp_path: Path) -> None:
     left = tmp_path / "out.zarr.parts" / ".roughmdr.x.tmp"
     (left / "force").mkdir(parents=True)
@@ -148,6 +152,7 @@ def test_what_a_killed_writer_left_is_in_nobodys_way(tmp_path: Path) -> None:
     assert [path.name for path in tmp_path.iterdir()] == ["out.zarr"]
 
 
+@pytest.mark.large
 @pytest.mark.parametrize("exchanges", [True, False])
 def test_the_store_of_before_is_replaced_whole(
     tmp_path: Path, exchanges: bool, monkeypatch: pytest.MonkeyPatch
@@ -162,6 +167,7 @@ def test_the_store_of_before_is_replaced_whole(
     assert [path.name for path in tmp_path.iterdir()] == ["out.zarr"]
 
 
+@pytest.mark.large
 def test_if_it_cannot_be_written_the_one_of_before_stays(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     rm.run(scene(), tmp_path / "out.zarr")
     before = read_result(tmp_path / "out.zarr").checksum()
@@ -247,6 +253,7 @@ def test_damage_is_told(tmp_path: Path) -> None:
         read_result(tmp_path / "out.zarr")
 
 
+@pytest.mark.large
 @settings(deadline=None)
 @given(st.lists(st.integers(1, 2000), max_size=4))
 def test_chunks_are_small_and_cover_all_once(shape: list[int]) -> None:

@@ -71,6 +71,7 @@ def fuller_tabor_by_mpmath(h: float, lowest: float, work: float) -> float:
     return float(density * mp.quad(integrand, [first + (far - first) * k / 8 for k in range(9)]))
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("h", [-0.5e-6, 0.3e-6, 1e-6, 2e-6])
 def test_the_integral_of_fuller_and_tabor(h: float) -> None:
     work, turning = 0.05, -0.6e-6
@@ -104,6 +105,7 @@ def test_separations_below_the_turning_point_are_refused() -> None:
         rm.theory.fuller_tabor(separation=[0.0, 1e-6], work=0.1, turning=0.5e-6, **GW)
 
 
+@pytest.mark.large
 @pytest.mark.parametrize("work", [0.0, 0.05])
 def test_sampled_ensembles_agree_within_three_standard_errors(work: float) -> None:
     """Four separations a branch; the seed is fixed, so that this either holds or does not."""

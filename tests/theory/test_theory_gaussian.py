@@ -87,7 +87,7 @@ def scaled(contacts: str, variable: str, h: float, alpha: float) -> float:
     return float(value) / (unit * alpha / (6.0 * math.pi * math.sqrt(3.0)))
 
 
-@pytest.mark.few(3)
+@pytest.mark.few(1)
 @pytest.mark.parametrize("variable", ["pressure", "contact_fraction", "contact_density"])
 @pytest.mark.parametrize(("h", "alpha"), [(-2.0, 1.8), (3.0, 2.5), (6.0, 1.8), (6.0, 40.0), (20.0, 2.5)])
 def test_the_laws_against_mpmath(variable: str, h: float, alpha: float) -> None:
@@ -112,7 +112,7 @@ def test_greenwood_by_the_closed_joint_law_of_height_and_curvature() -> None:
     assert scaled("circular", "pressure", h, ALPHA) == pytest.approx(float(exact), rel=1e-12)
 
 
-@pytest.mark.few(1)
+@pytest.mark.large
 @pytest.mark.parametrize("alpha", [1.55, 4.0])
 def test_drawn_summits_carry_what_the_laws_say(alpha: float) -> None:
     """The height and second derivatives of a Gaussian surface where its slope is 0, weighted as their density is."""
@@ -169,6 +169,7 @@ def test_circles_in_place_of_ellipses_cost_a_few_per_cent() -> None:
     np.testing.assert_allclose(number[0], number[1], rtol=1e-13)
 
 
+@pytest.mark.large
 @given(h=st.floats(-3.0, 6.0), size=st.floats(1e-9, 1e9), steeper=st.floats(1e-3, 1e3))
 @settings(deadline=None, max_examples=15)
 def test_the_laws_hold_at_every_size(h: float, size: float, steeper: float) -> None:
@@ -184,6 +185,7 @@ def test_the_laws_hold_at_every_size(h: float, size: float, steeper: float) -> N
         assert float(there) == pytest.approx(steeper * float(here), rel=1e-11)
 
 
+@pytest.mark.large
 @given(h=st.floats(-1e3, 1e3), excess=st.floats(1e-12, 1e12))
 @settings(deadline=None, max_examples=30)
 def test_numbers_are_finite_and_fall_with_separation(h: float, excess: float) -> None:

@@ -8,6 +8,7 @@ from itertools import pairwise
 import mpmath
 import numpy as np
 import pytest
+from forms import large_where_compiled
 from numpy.typing import NDArray
 from scipy.special import ellipkm1
 
@@ -174,6 +175,7 @@ def test_out_of_reach_there_is_no_field() -> None:
         assert field(tip, r=[], indentation=0.0, **numbers).sizes == {"r": 0}
 
 
+@large_where_compiled
 def test_the_zone_of_a_pressed_punch_is_closed() -> None:
     punch, numbers = SHAPES["flat_punch"][0], numbers_of("flat_punch")
     r = B * np.array([0.0, 0.7, 0.99])

@@ -60,6 +60,7 @@ def flow_pressure(stiff: float, poisson: float) -> Any:
     return p if mp.mpf(stiff) > 2 * p else mp.inf
 
 
+@pytest.mark.large
 @few
 @given(STIFF, POISSON, st.floats(0.02, 5.0), st.floats(0.0, 0.98))
 def test_cones_are_springs_that_are_summed(stiff: float, poisson: float, slope: float, back: float) -> None:

@@ -102,6 +102,7 @@ def _leg(begin: float, end: float, kinks: list[float]) -> tuple[Floats, Floats]:
     return tuple(np.concatenate(each) for each in zip(*parts, strict=True))
 
 
+@pytest.mark.large
 @few
 @given(STIFF, STICKY, SQUARED, st.lists(st.floats(0.0, 1.0), min_size=5, max_size=5))
 def test_the_work_of_the_flat_is_stored_or_lost(stiff: float, sticky: float, squared: float, ways: Any) -> None:

@@ -83,6 +83,7 @@ def by_quantiles(family: str, model: str, of: Body, path: Floats) -> Floats:
     return found
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("stiff", [30.0, large(1000.0)])
 @pytest.mark.parametrize("family", ["normal", "beta", *map(large, ("uniform", "exponential", "lognorm"))])
 @pytest.mark.parametrize("model", ["mdr", *map(large, ("jackson-green", "kogut-etsion"))])
@@ -172,6 +173,7 @@ def law(own: Any, path: MachinePath) -> dict[str, Floats]:
     return dict(plastic_law(own, path, ["force", "separation", "contact_fraction", "remote"]).variables)
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("case", CASES)
 def test_loads_are_met_and_zero_load_is_where_the_last_contact_parts(case: Any) -> None:
     own = asperities(*case)
@@ -186,6 +188,7 @@ def test_loads_are_met_and_zero_load_is_where_the_last_contact_parts(case: Any) 
     assert h[9] == pytest.approx(h[3], abs=1e-10 * (h[0] - h[3]))  # loaded again as far as before
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("case", [CASES[0], large(CASES[1])])
 @pytest.mark.parametrize("stiffness", [None, K])
 @pytest.mark.parametrize("preload", [Preload("force", 5.0), Preload("contact_fraction", 1e-3)])

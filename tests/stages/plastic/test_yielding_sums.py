@@ -62,6 +62,7 @@ def followed(kernels: Any, z: float, row: Floats, of: Body, path: Floats) -> Flo
     return found
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("work", [0.0, W, 10.0 * W])
 def test_a_sum_is_that_of_contacts_followed_one_by_one(work: float) -> None:
     """Asperities of two blocks, each with a memory of its own."""
