@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roughmdr.ensemble.ensemble import Ensemble
-from roughmdr.ensemble.maps.height_map import HeightMap, map_statistics
+from roughmdr.ensemble.maps.height_map import HeightMap, map_statistics, spline_coefficients
 from roughmdr.ensemble.maps.hills.ellipse import PARAMETERS, area_share, improve
 from roughmdr.ensemble.maps.hills.table import fill_table, points_of
 from roughmdr.ensemble.maps.hills.territory import RAYS, STEPS, Spline, Territory, explore, raw_height, top_of
@@ -66,7 +66,7 @@ def find_hills(surface: HeightMap, summits: Ensemble, scales: int = SCALES) -> E
     of circles as stiff; ``anisotropy`` [1], the ratio of the r.m.s. slopes across and along the ridges.
     """
     length = wavelength(surface)
-    spline = Spline.of(surface, length)
+    spline = Spline(spline_coefficients(surface), surface.dx / length, surface.dy / length, surface.periodic)
     radius = np.geomspace(SMALLEST, LARGEST, scales)
     points = points_of(radius)
     rows, columns = summits.positions["x"] / surface.dx - 0.5, summits.positions["y"] / surface.dy - 0.5
