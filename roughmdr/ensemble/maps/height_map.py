@@ -70,12 +70,10 @@ def map_statistics(surface: HeightMap) -> dict[str, float | int | str]:
     nx, ny = height.shape
     scale = surface.highest or 1.0
 
-    def parts() -> Iterator[Floats]:
-        return (height[rows] / scale for rows in blocks(nx, ny))
-
     with_next = (np.arange(rows.start, rows.stop + 1) for rows in blocks(nx if periodic else nx - 1, ny))
     along_x = (np.diff(height[rows % nx], axis=0) / scale for rows in with_next)
-    along_y = (np.diff(part, axis=1, append=part[:, : int(periodic)]) for part in parts())
+    parts = (height[rows] / scale for rows in blocks(nx, ny))
+    along_y = (np.diff(part, axis=1, append=part[:, : int(periodic)]) for part in parts)
     return {
         "rms_height": mean_and_rms(surface)[1],
         "rms_slope": math.hypot(_rms(along_x) * scale / dx, _rms(along_y) * scale / dy),

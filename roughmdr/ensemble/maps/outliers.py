@@ -85,15 +85,13 @@ def leave_out_outliers(
 
 def _refuse_coordinates(height: Floats) -> None:
     """RoughmdrError where the first row or column counts up evenly, and the next one does not."""
-    which = {"row": height[0, 1:], "column": height[1:, 0]}
-    after = {"row": height[1, 1:], "column": height[1:, 1]}
-    found = []
-    for name, values in which.items():
-        uneven = _unevenness(values)
-        if uneven <= _EVEN and _unevenness(after[name]) > max(_UNEVEN, _LESS_EVEN * uneven):
-            found.append(name)
+    found = dict[str, float]()
+    for name, (first, after) in {"row": height[:2, 1:], "column": height.T[:2, 1:]}.items():
+        uneven = _unevenness(first)
+        if uneven <= _EVEN and _unevenness(after) > max(_UNEVEN, _LESS_EVEN * uneven):
+            found[name] = float(np.mean(np.diff(first)))
     if found:
-        steps = " and ".join(f"{float(np.mean(np.diff(which[name]))):.4g}" for name in found)
+        steps = " and ".join(f"{step:.4g}" for step in found.values())
         names, those = " and first ".join(found), "they are" if len(found) > 1 else "it is"
         nx, ny = height.shape[0] - ("row" in found), height.shape[1] - ("column" in found)
         raise RoughmdrError(
