@@ -56,11 +56,6 @@ class Source(Section):
         return ()
 
     @property
-    def content_hash(self) -> str:
-        """A hash of the contents of those files; empty where there are none."""
-        return ""
-
-    @property
     def warnings(self) -> tuple[str, ...]:
         """Warnings of entries that users may misunderstand."""
         return ()
