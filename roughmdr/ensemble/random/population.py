@@ -55,8 +55,6 @@ class Populations:
     @property
     def sigma(self) -> float:
         """Standard deviation of the heights [m]; inf or NaN where there is none."""
-        if len(self.members) == 1:
-            return self.members[0].height.std
         origin = self.members[0].height.mean
         fractions = [each.fraction for each in self.members]
         means = [each.height.mean - origin for each in self.members]
