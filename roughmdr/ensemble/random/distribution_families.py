@@ -121,6 +121,7 @@ def find_family(name: str) -> Family | None:
     return _from_scipy(family) if isinstance(family, scipy.stats.rv_continuous) else None
 
 
+@cache
 def known_families() -> list[str]:
     """Return the names of all families."""
     import scipy.stats
