@@ -16,8 +16,7 @@ import numpy as np
 
 from roughmdr.asperity.contact import Contact
 from roughmdr.ensemble.nodes import Nodes, Rule
-from roughmdr.ensemble.random.population import Population
-from roughmdr.ensemble.random.population_nodes import nodes_of
+from roughmdr.ensemble.random.population import Population, nodes_of
 from roughmdr.ensemble.random.section import RandomAsperities
 from roughmdr.expected.curve import branch_ends
 from roughmdr.kernels.elementwise import apply, apply_all

@@ -15,8 +15,7 @@ from roughmdr.ensemble.nodes import Nodes, Rule
 from roughmdr.ensemble.patch_source import MAX_COUNT, PatchSource
 from roughmdr.ensemble.random.distribution import Distribution
 from roughmdr.ensemble.random.distribution_reader import DistributionReader
-from roughmdr.ensemble.random.population import Population, Populations
-from roughmdr.ensemble.random.population_nodes import nodes_of
+from roughmdr.ensemble.random.population import Population, Populations, nodes_of
 from roughmdr.ensemble.streams import HEIGHT, PARAMETER, Streams, make_streams, poisson
 from roughmdr.errors import RoughmdrError
 from roughmdr.numerics.arguments import Floats
