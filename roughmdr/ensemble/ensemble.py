@@ -202,9 +202,7 @@ def _nominal_area(attrs: dict[str, Any], sides: dict[str, float]) -> float | Non
 
 
 def _of_map(attrs: dict[str, Any]) -> dict[str, float | int | str]:
-    """Return the attributes of summits and hills that are there: whether the surface continues, uncertainty of radii,
-    least distance, errors of hills; RoughmdrError where one is not allowed.
-    """
+    """Return the attributes of summits and hills that are there; RoughmdrError where one is not allowed."""
     model = attrs.get("asperity_model", "hills")
     if model != "hills":
         raise RoughmdrError(f"attribute asperity_model is {short_repr(model)}; it must be 'hills' or absent")

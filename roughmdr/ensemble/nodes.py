@@ -66,10 +66,7 @@ def fraction_above(score: float) -> float:
 
 
 def mean_over_edge(index: Floats) -> Floats:
-    """Return the mean, over a tail, of a quantity that grows as fraction^-index, divided by its value at the edge.
-
-    inf where the mean is unbounded.
-    """
+    """Return the mean over a tail of what grows as fraction^-index, over its value at the edge; inf if unbounded."""
     return np.where(index < 1.0, 1.0 / np.where(index < 1.0, 1.0 - index, 1.0), math.inf)
 
 
@@ -101,9 +98,7 @@ class Rule(NamedTuple):
 
     @classmethod
     def between(cls, cuts: list[float], order: int) -> "Rule":
-        """Return Gauss's rule of ``order`` scores between neighbouring ``cuts``, for functions smooth in the square
-        root of the distance to each cut.
-        """
+        """Return Gauss's rule of ``order`` scores between cuts, for functions smooth in roots of distances to them."""
         ends = np.unique(np.clip([-PARAMETER_END, *cuts, PARAMETER_END], -PARAMETER_END, PARAMETER_END))
         y, weights = unit_gauss(order)
         # x(y) from 0 to 1 and its slope, quadratic at each end that is a cut: (is the lower one, is the upper one).

@@ -41,9 +41,7 @@ def blocks(rows: int, columns: int, chunk: int = 1) -> Iterator[slice]:
 
 
 def blocks_with_neighbours(surface: HeightMap) -> Iterator[tuple[Floats, int]]:
-    """Yield blocks of rows of a map with their first rows, and a row and a column of neighbours at each side: those of
-    the next period, or else the border itself, of which no point is an inner one.
-    """
+    """Yield blocks of a map in a frame of neighbours, the next period or the border itself, with their first rows."""
     height, (nx, ny) = surface.height, surface.height.shape
     if not surface.periodic:
         yield from ((height[rows.start : rows.stop + 2], rows.start) for rows in blocks(nx - 2, ny))
@@ -98,10 +96,7 @@ def spline_mode(surface: HeightMap) -> Literal["grid-wrap", "mirror"]:
 
 
 def spline_coefficients(surface: HeightMap) -> Floats:
-    """Return the coefficients [m] of the cubic B-splines of a map at its points, shape (x, y).
-
-    Undefined points take the height of the nearest that is defined.
-    """
+    """Return the coefficients [m] of the cubic B-splines, [x, y]; undefined points take the nearest known height."""
     from scipy.ndimage import distance_transform_edt, spline_filter
 
     height = surface.height

@@ -165,9 +165,7 @@ def _levelled(height: Floats, unit: str) -> Iterator[_Finding]:
 
 
 def _spikes(height: Floats, unit: str, *, periodic: bool) -> Iterator[_Finding]:
-    """Yield the points, single or in squares of four, that stand out above or below their neighbours, all but one, by
-    more than the range of these and more than other steps of the map.
-    """
+    """Yield points, single or 2 x 2, beyond all neighbours but one by more than the range of these and other steps."""
     least = _SPIKE * _LARGE * _step(height, 0.8)  # robust to spikes at up to 10 % of the points
     if not least > 0.0:
         return
@@ -239,9 +237,7 @@ def _is_frequent(value: float, number: int, levels: Floats, counts: NDArray[np.i
 
 
 def _step(height: Floats, quantile: float, without: Iterable[float] = ()) -> float:
-    """Return a quantile of the differences of neighbours that are not equal, in magnitude, in a sample of rows; without
-    those at given values, and 0 where there are none.
-    """
+    """Return a quantile of the unequal steps of neighbours, but for given values, in a sample of rows; 0 for none."""
     rows = np.arange(0, height.shape[0] - 1, -(-height.size // _SAMPLE))
     part, after = (np.where(np.isin(each, list(without)), np.nan, each) for each in (height[rows], height[rows + 1]))
     steps = np.abs(np.concatenate([(after - part).ravel(), np.diff(part, axis=1).ravel()]))

@@ -36,8 +36,7 @@ class MapWaves(NamedTuple):
 def slope_ratio(surface: HeightMap) -> float:
     """Return the ratio of the r.m.s. slopes across and along the ridges of a map, at least 1.
 
-    Those are the roots of the eigenvalues of <grad h grad h>, over the points whose next along x and along y is
-    defined.
+    They are the roots of the eigenvalues of <grad h grad h>, over points whose next along x and along y is defined.
     """
     height, dx, dy, periodic = surface[:4]
     nx, ny = height.shape
