@@ -77,9 +77,11 @@ class Rule(NamedTuple):
     weights: Floats
 
     @classmethod
+    @cache
     def smooth(cls, order: int) -> "Rule":
         """Return Gauss's rule for smooth functions."""
-        return cls(*_hermite_gauss(order))
+        scores, weights = np.polynomial.hermite_e.hermegauss(order)
+        return cls(scores, weights / weights.sum())
 
     def weights_below(self, ends: Floats) -> Floats:
         """Return the weights of integrals up to each of ``ends`` [end], for a rule of ``smooth``: [end, score].
@@ -114,12 +116,6 @@ class Rule(NamedTuple):
             parts.append((low + (high - low) * x, (high - low) * slope * weights))
         scores, lengths = map(np.concatenate, zip(*parts, strict=True))
         return cls(scores, lengths * np.exp(-0.5 * scores**2) / math.sqrt(2.0 * math.pi))
-
-
-@cache
-def _hermite_gauss(order: int) -> tuple[Floats, Floats]:
-    scores, weights = np.polynomial.hermite_e.hermegauss(order)
-    return scores, weights / weights.sum()
 
 
 def hermite(x: Floats, count: int) -> Floats:
