@@ -227,10 +227,8 @@ class RandomAsperities(PatchSource):
     ) -> Ensemble:
         """Return the asperities of one realisation; of a density, stratified ones are the mean number, rounded."""
         streams = make_streams(seed, realization, self.populations.random_streams if stratified else ())
-        if self.count is not None or stratified:
-            count = round(self.expected_count)
-        else:
-            count = poisson(streams, self.expected_count)
+        is_fixed = self.count is not None or stratified
+        count = round(self.expected_count) if is_fixed else poisson(streams, self.expected_count)
         positions = self.positions(streams, count) if with_positions else {}
         attrs = {**self.patch_attrs, "seed": seed, "realization": realization}
         return self._drawn(streams, count, positions, attrs)
