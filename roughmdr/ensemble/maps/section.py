@@ -29,11 +29,6 @@ _UNCUT = ("rms_height", "rms_slope", "mean_curvature_radius")
 class SurfaceAsperities(MapSource, FromFile):
     """[asperities] with source = "surface": the summits of the map in ``file`` (``find_summits``), or its hills.
 
-    ``size`` and ``unit`` (of the heights) describe a map whose file does not; ``channel`` chooses among the maps of a
-    file; ``periodic`` overrides the file. ``outliers`` (marks of undefined points, spikes) are "undefined", or "kept";
-    a map that has some is refused where neither is said. ``detrend`` is removed, by default "quadratic", or "mean" of a
-    periodic map; so are waves shorter than ``cutoff``.
-
     Attributes of the ensemble beside those of ``find_summits`` and ``map_statistics``: ``rms_height_raw`` [m], before
     the trend is removed; ``mean_curvature_radius`` [m], 1/<sqrt(k1 k2)>; with a cutoff ``uncut_...``, without it; and
     ``radius_uncertainty`` [1] (``resolution``). Those of hills are told by ``find_hills``.
