@@ -13,7 +13,6 @@ from roughmdr.numerics.gauss import unit_gauss
 
 HEIGHT_END = 10.0  # normal score beyond which heights with light tails are left out: a fraction of 1e-23
 PARAMETER_END = 8.5  # normal score beyond which a rule with cuts leaves parameters out: a fraction of 1e-17
-
 _FAR = 40.0  # normal score beyond which no float holds the density
 
 
@@ -46,16 +45,6 @@ class Heights(NamedTuple):
     def all_at(cls, height: float) -> "Heights":
         """Return heights that are all the same [m]."""
         return cls(np.zeros_like, None, (0.0, 0.0), 0.0, UpperTail(0.0, 0.0), height)
-
-    @property
-    def low(self) -> float:
-        """Height [m] below which a negligible fraction of the summits lies."""
-        return self.origin + self.edges[0]
-
-    @property
-    def high(self) -> float:
-        """Height [m] above which a negligible fraction of the summits lies."""
-        return self.origin + self.edges[-1]
 
 
 def fraction_above(score: float) -> float:

@@ -132,7 +132,7 @@ class _EqualTips:
         """Indentations [m] between which each stable branch lies."""
         self.touch = -self.contact.adhesion.range
         marks = [self.touch, *(end for branch in self.branches for end in branch if end < math.inf)]
-        low, high = self.heights.low, self.heights.high
+        low, high = (self.heights.origin + self.heights.edges[end] for end in (0, -1))
         cuts: dict[float, object] = {low: "low", high: "high"}
         for step, h in enumerate(self.separation.tolist()):
             cuts |= {h + mark: (step, k) for k, mark in enumerate(marks) if low < h + mark < high}
