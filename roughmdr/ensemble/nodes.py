@@ -8,6 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from roughmdr.ensemble.random.distribution_families import ndtr
 from roughmdr.numerics.arguments import Floats
 from roughmdr.numerics.gauss import unit_gauss
 
@@ -49,9 +50,7 @@ class Heights(NamedTuple):
 
 def fraction_above(score: float) -> float:
     """Return the fraction of a distribution that lies above a normal score."""
-    from scipy.special import ndtr
-
-    return float(ndtr(-score))
+    return float(ndtr(np.array(-score)))
 
 
 def mean_over_edge(index: Floats) -> Floats:
@@ -78,8 +77,6 @@ class Rule(NamedTuple):
         They are those of the polynomial through the values at the scores, whose series is in the normalised Hermite
         polynomials h_m: the integral of h_m times the normal density up to x is -h_(m-1)(x) density/sqrt(m).
         """
-        from scipy.special import ndtr
-
         order = self.scores.size
         ends = np.clip(ends, -_FAR, _FAR)
         density = np.exp(-0.5 * ends**2) / math.sqrt(2.0 * math.pi)
