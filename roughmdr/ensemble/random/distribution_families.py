@@ -118,7 +118,15 @@ def find_family(name: str) -> Family | None:
     import scipy.stats
 
     family = getattr(scipy.stats, name, None)
-    return _from_scipy(family) if isinstance(family, scipy.stats.rv_continuous) else None
+    if not isinstance(family, scipy.stats.rv_continuous):
+        return None
+    functions = (family.ppf, family.isf, family.cdf, family.sf, family.pdf)
+    return Family(
+        () if family.shapes is None else tuple(family.shapes.split(", ")),
+        _quiet(lambda *args: bool(family._argcheck(*args))),
+        lru_cache(maxsize=256)(_quiet(partial(_checked_moments, family))),
+        *(_quiet(_nan_for_errors(function)) for function in functions),
+    )
 
 
 @cache
@@ -128,16 +136,6 @@ def known_families() -> list[str]:
 
     names = [name for name in dir(scipy.stats) if isinstance(getattr(scipy.stats, name), scipy.stats.rv_continuous)]
     return sorted({*FAST_FAMILIES, *names})
-
-
-def _from_scipy(family: Any) -> Family:
-    functions = (family.ppf, family.isf, family.cdf, family.sf, family.pdf)
-    return Family(
-        () if family.shapes is None else tuple(family.shapes.split(", ")),
-        _quiet(lambda *args: bool(family._argcheck(*args))),
-        lru_cache(maxsize=256)(_quiet(partial(_checked_moments, family))),
-        *(_quiet(_nan_for_errors(function)) for function in functions),
-    )
 
 
 def _nan_for_errors(function: Callable[..., Floats]) -> Callable[..., Floats]:
