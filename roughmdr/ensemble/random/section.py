@@ -66,10 +66,7 @@ class RandomAsperities(PatchSource):
     correlation: Correlation | None = None
     """Spearman's rank correlation of the height with one shape parameter."""
 
-    @model_validator(mode="before")
-    @classmethod
-    def _fill_lattice(cls, table: Any) -> Any:
-        return with_sites_counted(table)
+    _fill_lattice = model_validator(mode="before")(with_sites_counted)
 
     @model_validator(mode="after")
     def _check_parameters_and_count(self) -> "RandomAsperities":
