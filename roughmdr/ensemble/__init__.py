@@ -114,7 +114,9 @@ def generate(asperities: dict[str, Any] | Source, *, seed: int, realization: int
     >>> ensemble.attrs["shape"], float(ensemble.attrs["nominal_area"])
     ('paraboloid', 1e-06)
     """
-    section = asperities if isinstance(asperities, Source) else _validated(asperities)
+    if not isinstance(asperities, dict | Source):
+        raise SceneError(f"asperities is {asperities!r}; it must be a table, or the section of a scene")
+    section: Source = validated(Asperities, asperities, "asperities") if isinstance(asperities, dict) else asperities
     ensemble = make(section, _whole_number("seed", seed), _whole_number("realization", realization))
     warn_limits(ensemble.warnings)
     return ensemble.labelled().to_xarray()
@@ -131,10 +133,3 @@ def _whole_number(name: str, value: object) -> int:
     if isinstance(value, bool) or not isinstance(value, SupportsIndex) or operator.index(value) < 0:
         raise SceneError(f"{name} is {value!r}; it must be a whole number of at least 0")
     return operator.index(value)
-
-
-def _validated(table: dict[str, Any]) -> Source:
-    if not isinstance(table, dict):
-        raise SceneError(f"asperities is {table!r}; it must be a table, or the section of a scene")
-    section: Source = validated(Asperities, table, "asperities")
-    return section

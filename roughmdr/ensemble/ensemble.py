@@ -141,13 +141,10 @@ class Ensemble:
         """Return the arrays over ``asperity``, with their units."""
         units = SHAPES[self.shape].units
         variables = {"height": Array(("asperity",), self.height, COORDINATES["height"].attrs)}
-        for name, column in self.parameters.items():
-            attrs = {"units": units[name], "long_name": f"{name} of the {self.shape}"}
-            variables[name] = Array(dimensions_of(SHAPES[self.shape]), column, attrs)
-        if self.shared_profile is not None:
-            for name, column in self.shared_profile.columns.items():
-                attrs = {"units": units[name], "long_name": f"{name} of the {self.shape}, the same for all"}
-                variables[name] = Array((self.shared_profile.dimension,), column, attrs)
+        shared, along = self.shared_profile, dimensions_of(SHAPES[self.shape])
+        for name, column in (self.parameters if shared is None else shared.columns).items():
+            meaning = f"{name} of the {self.shape}{'' if shared is None else ', the same for all'}"
+            variables[name] = Array(along, column, {"units": units[name], "long_name": meaning})
         for name, column in self.positions.items():
             variables[name] = Array(("asperity",), column, COORDINATES[name].attrs)
         area = {} if self.nominal_area is None else {"nominal_area": self.nominal_area}
@@ -169,14 +166,13 @@ def _read(dataset: "xr.Dataset") -> Ensemble:
         raise RoughmdrError(f"attribute shape is {short_repr(shape)}; it must be one of {', '.join(SHAPES)}")
     height = _column(dataset, "height", "m")
     positions = {name: _column(dataset, name, "m") for name in ("x", "y") if name in dataset}
-    kind, parameters, shared_profile = SHAPES[shape], dict[str, Floats](), None
+    kind, along, shared_profile = SHAPES[shape], dimensions_of(SHAPES[shape]), None
+    given = {name for name in kind.units if name in dataset}
+    names = tuple(kind.units) if kind.shared else kind.parameter_set(given)
+    parameters = {name: _column(dataset, name, kind.units[name], along) for name in names}
     if issubclass(kind, SharedProfile):
-        columns = {name: _column(dataset, name, unit, kind.dimension) for name, unit in kind.units.items()}
-        shared_profile = kind.from_columns(columns)
+        shared_profile, parameters = kind.from_columns(parameters), {}
     else:
-        names = kind.parameter_set({name for name in kind.units if name in dataset})
-        along = dimensions_of(kind)
-        parameters = {name: _column(dataset, name, kind.units[name], *along) for name in names}
         kind.check(parameters)
     sides = {name: _size(name, dataset.attrs[name]) for name in _SIDES if name in dataset.attrs}
     warnings = dataset.attrs.get("warnings", "")
@@ -189,6 +185,8 @@ def _read(dataset: "xr.Dataset") -> Ensemble:
 
 def dimensions_of(shape: type[Shape]) -> tuple[str, ...]:
     """Return the dimensions of the parameters of asperities of a shape."""
+    if issubclass(shape, SharedProfile):
+        return (shape.dimension,)
     return ("asperity", shape.dimension) if issubclass(shape, TabledShape) else ("asperity",)
 
 
@@ -204,9 +202,7 @@ def _nominal_area(attrs: dict[str, Any], sides: dict[str, float]) -> float | Non
 
 
 def _of_map(attrs: dict[str, Any]) -> dict[str, float | int | str]:
-    """Return the attributes of summits and hills that are there: whether the surface continues, uncertainty of radii,
-    least distance, errors of hills; RoughmdrError where one is not allowed.
-    """
+    """Return the attributes of summits and hills that are there; RoughmdrError where one is not allowed."""
     model = attrs.get("asperity_model", "hills")
     if model != "hills":
         raise RoughmdrError(f"attribute asperity_model is {short_repr(model)}; it must be 'hills' or absent")
@@ -224,8 +220,7 @@ def _size(name: str, value: Any) -> float:
     return check_number(f"attribute {name}", value, "in SI")
 
 
-def _column(dataset: "xr.Dataset", name: str, unit: str, *along: str) -> Floats:
-    along = along or ("asperity",)
+def _column(dataset: "xr.Dataset", name: str, unit: str, along: tuple[str, ...] = ("asperity",)) -> Floats:
     if name not in dataset:
         raise RoughmdrError(f"variable {name!r} is missing")
     variable = dataset[name]
@@ -237,8 +232,7 @@ def _column(dataset: "xr.Dataset", name: str, unit: str, *along: str) -> Floats:
     if variable.dtype.kind not in "iuf":
         raise RoughmdrError(f"{name} is of type {variable.dtype}; it must be numbers")
     try:
-        units = str(variable.attrs.get("units", ""))
-        factor = 1.0 if units == unit else float(unit_factor(units, unit))
+        factor = float(unit_factor(str(variable.attrs.get("units", "")), unit))
     except RoughmdrError as error:
         raise RoughmdrError(f"units of {name}: {error}") from None
     with np.errstate(over="ignore"):  # refused below

@@ -8,12 +8,12 @@ from typing import NamedTuple
 
 import numpy as np
 
+from roughmdr.ensemble.random.distribution_families import ndtr
 from roughmdr.numerics.arguments import Floats
 from roughmdr.numerics.gauss import unit_gauss
 
 HEIGHT_END = 10.0  # normal score beyond which heights with light tails are left out: a fraction of 1e-23
 PARAMETER_END = 8.5  # normal score beyond which a rule with cuts leaves parameters out: a fraction of 1e-17
-
 _FAR = 40.0  # normal score beyond which no float holds the density
 
 
@@ -47,29 +47,14 @@ class Heights(NamedTuple):
         """Return heights that are all the same [m]."""
         return cls(np.zeros_like, None, (0.0, 0.0), 0.0, UpperTail(0.0, 0.0), height)
 
-    @property
-    def low(self) -> float:
-        """Height [m] below which a negligible fraction of the summits lies."""
-        return self.origin + self.edges[0]
-
-    @property
-    def high(self) -> float:
-        """Height [m] above which a negligible fraction of the summits lies."""
-        return self.origin + self.edges[-1]
-
 
 def fraction_above(score: float) -> float:
     """Return the fraction of a distribution that lies above a normal score."""
-    from scipy.special import ndtr
-
-    return float(ndtr(-score))
+    return float(ndtr(np.array(-score)))
 
 
 def mean_over_edge(index: Floats) -> Floats:
-    """Return the mean, over a tail, of a quantity that grows as fraction^-index, divided by its value at the edge.
-
-    inf where the mean is unbounded.
-    """
+    """Return the mean over a tail of what grows as fraction^-index, over its value at the edge; inf if unbounded."""
     return np.where(index < 1.0, 1.0 / np.where(index < 1.0, 1.0 - index, 1.0), math.inf)
 
 
@@ -80,9 +65,11 @@ class Rule(NamedTuple):
     weights: Floats
 
     @classmethod
+    @cache
     def smooth(cls, order: int) -> "Rule":
         """Return Gauss's rule for smooth functions."""
-        return cls(*_hermite_gauss(order))
+        scores, weights = np.polynomial.hermite_e.hermegauss(order)
+        return cls(scores, weights / weights.sum())
 
     def weights_below(self, ends: Floats) -> Floats:
         """Return the weights of integrals up to each of ``ends`` [end], for a rule of ``smooth``: [end, score].
@@ -90,8 +77,6 @@ class Rule(NamedTuple):
         They are those of the polynomial through the values at the scores, whose series is in the normalised Hermite
         polynomials h_m: the integral of h_m times the normal density up to x is -h_(m-1)(x) density/sqrt(m).
         """
-        from scipy.special import ndtr
-
         order = self.scores.size
         ends = np.clip(ends, -_FAR, _FAR)
         density = np.exp(-0.5 * ends**2) / math.sqrt(2.0 * math.pi)
@@ -101,9 +86,7 @@ class Rule(NamedTuple):
 
     @classmethod
     def between(cls, cuts: list[float], order: int) -> "Rule":
-        """Return Gauss's rule of ``order`` scores between neighbouring ``cuts``, for functions smooth in the square
-        root of the distance to each cut.
-        """
+        """Return Gauss's rule of ``order`` scores between cuts, for functions smooth in roots of distances to them."""
         ends = np.unique(np.clip([-PARAMETER_END, *cuts, PARAMETER_END], -PARAMETER_END, PARAMETER_END))
         y, weights = unit_gauss(order)
         # x(y) from 0 to 1 and its slope, quadratic at each end that is a cut: (is the lower one, is the upper one).
@@ -119,12 +102,6 @@ class Rule(NamedTuple):
             parts.append((low + (high - low) * x, (high - low) * slope * weights))
         scores, lengths = map(np.concatenate, zip(*parts, strict=True))
         return cls(scores, lengths * np.exp(-0.5 * scores**2) / math.sqrt(2.0 * math.pi))
-
-
-@cache
-def _hermite_gauss(order: int) -> tuple[Floats, Floats]:
-    scores, weights = np.polynomial.hermite_e.hermegauss(order)
-    return scores, weights / weights.sum()
 
 
 def hermite(x: Floats, count: int) -> Floats:

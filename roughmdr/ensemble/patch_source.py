@@ -115,9 +115,7 @@ class PatchSource(Source):
 
     @property
     def patch_attrs(self) -> dict[str, float | int | str]:
-        """The sides of the patch, and where they are above 0 ``goes_on`` and ``exclusion_distance``, as attributes of
-        ensembles.
-        """
+        """The sides of the patch, and ``goes_on`` and ``exclusion_distance`` if above 0, as attributes of ensembles."""
         sides = {"patch": self.patch} if self.lattice is None else dict(zip(_SIDES, self.sides, strict=True))
         others = {"goes_on": int(self.goes_on), "exclusion_distance": self.exclusion_distance}
         return {**sides, **{name: value for name, value in others.items() if value > 0.0}}

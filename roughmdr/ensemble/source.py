@@ -18,9 +18,7 @@ Patch = Annotated[float, Quantity("m", at_least=1e-150, at_most=1e150)]
 
 
 class Source(Section):
-    """[asperities]: a source declares its keys and overrides what raises NotImplementedError, and defaults as
-    needed.
-    """
+    """[asperities]: a source declares its keys, overrides what raises NotImplementedError, and defaults as needed."""
 
     is_random: ClassVar[bool] = True
     """Whether realisations differ."""
@@ -56,11 +54,6 @@ class Source(Section):
         return ()
 
     @property
-    def content_hash(self) -> str:
-        """A hash of the contents of those files; empty where there are none."""
-        return ""
-
-    @property
     def warnings(self) -> tuple[str, ...]:
         """Warnings of entries that users may misunderstand."""
         return ()
@@ -82,10 +75,7 @@ class Source(Section):
 
     @property
     def goes_on(self) -> bool:
-        """Whether the asperities are a sample of a surface that continues beyond the patch, not all that exist.
-
-        They are a sample where they have a density, or fill a lattice.
-        """
+        """Whether the asperities, by density or a lattice, are a sample of a surface that goes on beyond the patch."""
         return False
 
     def height_map(self, seed: int, realization: int) -> HeightMap | None:
@@ -153,9 +143,7 @@ class Source(Section):
         return self.model_copy(update={"count": None, "density": self.given_count / self.nominal_area})
 
     def limited_to(self, count: int) -> "Source":
-        """Return a source like this one with about ``count`` asperities at most, on so much smaller a patch, or itself
-        where that cannot be.
-        """
+        """Return a source of about ``count`` asperities at most, on a smaller patch; itself where that cannot be."""
         return self
 
     def reason_against(self, estimator: str) -> str:

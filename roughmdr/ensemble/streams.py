@@ -39,8 +39,7 @@ def uniforms(seed: int, realization: int, stream: int, count: int) -> Floats:
 def make_streams(seed: int, realization: int, stratified: tuple[int, ...] = ()) -> Streams:
     """Return streams of independent numbers, but for those in ``stratified``, which cover the unit cube evenly.
 
-    These are the coordinates of a Sobol sequence, scrambled anew in each realisation (A. B. Owen, J. Complexity 14
-    (1998) 466).
+    They are a Sobol sequence, scrambled anew in each realisation (A. B. Owen, J. Complexity 14 (1998) 466).
     """
 
     @cache

@@ -44,7 +44,7 @@ class KinkSplit(NamedTuple):
         except RoughmdrError:
             return None
         heights = dict.fromkeys(source.nodes(scan).heights)
-        ends = [end for own in heights for end in (own.low, own.high)] if len(heights) == 1 else []
+        ends = [own.origin + own.edges[end] for own in heights for end in (0, -1)] if len(heights) == 1 else []
         kinks = _kinks(problem.path, ends, float(depths.min()), float(depths.max()))
         if len(kinks) > _MAX_STEPS:
             return None

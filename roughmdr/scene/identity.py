@@ -2,7 +2,7 @@
 
 import hashlib
 
-from roughmdr.ensemble import Source
+from roughmdr.ensemble.from_file import FromFile
 from roughmdr.scene.scene import Scene
 
 LAYOUT = ("title", "output", "batch", "accuracy", "sweep")
@@ -27,7 +27,7 @@ class Digests:
     def _of_section(self, section: object) -> str:
         if id(section) not in self._known:
             by_content = section
-            if isinstance(section, Source) and section.inputs:
+            if isinstance(section, FromFile):
                 by_content = section.model_copy(update={"file": section.content_hash})
             self._known[id(section)] = section, _digest(repr(by_content))
         return self._known[id(section)][1]

@@ -11,8 +11,7 @@ from typing import Annotated, Any, Union, get_args, get_origin
 from pydantic import WithJsonSchema
 from pydantic.fields import FieldInfo
 
-from roughmdr.ensemble.random.distribution_reader import DistributionReader
-from roughmdr.ensemble.random.distribution_schema import distribution_names, distribution_schemas, own_parameters
+from roughmdr.ensemble.random import distribution_reader
 from roughmdr.scene.keys import key_readers
 from roughmdr.scene.scene import Scene
 from roughmdr.scene.sweep import ENDS, NUM, may_be_swept
@@ -43,20 +42,20 @@ def scene_schema() -> JsonSchema:
     for key, reader in key_readers([Scene], {}):
         if may_be_swept(key) and (entry := _swept(key, reader)) not in swept.setdefault(key, []):
             swept[key].append(entry)
-    sweep, definitions = sweep_schema(swept, sorted({name for names in own_parameters() for name in names}))
+    sweep, definitions = sweep_schema(swept, sorted(set[str]().union(*distribution_reader.own_parameters())))
     scene["properties"]["sweep"] |= sweep
     # A key that is swept may be left out otherwise.
     required = {**only_required(scene), "if": _ASKS, "else": {"required": ["path"]}}
     unless_swept = {"if": {"not": {"required": ["sweep"]}}, "then": required}
-    definitions |= distribution_schemas()
+    definitions |= distribution_reader.distribution_schemas()
     return {"$schema": _DRAFT, **without_required(scene), **unless_swept, "$defs": definitions}
 
 
 def _swept(key: str, reader: Reader) -> JsonSchema:
     """Return the schema of one value of a swept key; of a distribution that is a plain one."""
-    if isinstance(reader, DistributionReader):
+    if isinstance(reader, distribution_reader.DistributionReader):
         return Quantity(reader.dimension).json_schema()
-    return {"enum": distribution_names()} if key.endswith(".distribution") else reader.json_schema()
+    return {"enum": distribution_reader.distribution_names()} if key.endswith(".distribution") else reader.json_schema()
 
 
 def _section(section: type[Section], at: str) -> JsonSchema:

@@ -20,8 +20,7 @@ from roughmdr.cli import main
 from roughmdr.elements.half_space import BoundaryElements
 from roughmdr.ensemble.maps.height_map import HeightMap
 from roughmdr.ensemble.maps.hills.ellipse import area_share, complete_elliptic
-from roughmdr.ensemble.maps.hills.find import find_hills
-from roughmdr.ensemble.maps.hills.table import fill_table, points_of
+from roughmdr.ensemble.maps.hills.find import fill_table, find_hills, points_of
 from roughmdr.ensemble.maps.resolution import HILLS_BY_BORDER
 from roughmdr.ensemble.maps.summits import find_summits
 from roughmdr.ensemble.maps.waves import slope_ratio

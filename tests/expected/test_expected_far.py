@@ -17,7 +17,7 @@ from twins.quantile_means import mean_of_correlated, mean_of_heights, mean_of_ra
 
 import roughmdr as rm
 from roughmdr.ensemble.random.distribution import Distribution
-from roughmdr.ensemble.random.population_nodes import heights_of
+from roughmdr.ensemble.random.population import heights_of
 from roughmdr.expected.heights import HeightTable
 
 UM = 1e-6

@@ -16,8 +16,7 @@ import numpy as np
 
 from roughmdr.asperity.contact import Contact
 from roughmdr.ensemble.nodes import Nodes, Rule
-from roughmdr.ensemble.random.population import Population
-from roughmdr.ensemble.random.population_nodes import nodes_of
+from roughmdr.ensemble.random.population import Population, nodes_of
 from roughmdr.ensemble.random.section import RandomAsperities
 from roughmdr.expected.curve import branch_ends
 from roughmdr.kernels.elementwise import apply, apply_all
@@ -133,7 +132,7 @@ class _EqualTips:
         """Indentations [m] between which each stable branch lies."""
         self.touch = -self.contact.adhesion.range
         marks = [self.touch, *(end for branch in self.branches for end in branch if end < math.inf)]
-        low, high = self.heights.low, self.heights.high
+        low, high = (self.heights.origin + self.heights.edges[end] for end in (0, -1))
         cuts: dict[float, object] = {low: "low", high: "high"}
         for step, h in enumerate(self.separation.tolist()):
             cuts |= {h + mark: (step, k) for k, mark in enumerate(marks) if low < h + mark < high}

@@ -21,7 +21,7 @@ from numpy.polynomial.polynomial import polyval
 from numpy.typing import ArrayLike
 
 from roughmdr.ensemble.random.distribution import Distribution
-from roughmdr.ensemble.random.distribution_families import ndtr
+from roughmdr.ensemble.random.distribution_families import ndtr, ndtri
 from roughmdr.numerics.arguments import Floats
 from roughmdr.numerics.gauss import unit_gauss
 from roughmdr.spectrum import MIN_ALPHA, Moments
@@ -223,8 +223,6 @@ def product_of_score(scores: Floats) -> Floats:
 
     By Newton's method in y = sqrt(v), on the fractions below and above, each by Gauss's rule over its own side.
     """
-    from scipy.special import ndtri
-
     nodes, weights = unit_gauss(40)
 
     def score(y: Floats) -> Floats:

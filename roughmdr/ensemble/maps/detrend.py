@@ -91,9 +91,7 @@ def _cut_spectrum(height: Floats, along_x: float, along_y: float) -> None:
 
 
 def _smooth(field: Floats, along_x: float, along_y: float) -> None:
-    """Smooth a field in place by the Gaussian of a cut-off of so many spacings along x and y; outside it counts as
-    0.
-    """
+    """Smooth a field, 0 outside, in place by the Gaussian of a cut-off of so many spacings along x and y."""
     from scipy import fft
 
     # The Gaussian is a product of one along x and one along y. Along an axis with one point the field is constant.

@@ -2,26 +2,40 @@
 
 from collections.abc import Mapping
 from dataclasses import replace
-from typing import Literal
+from typing import ClassVar, Literal
 
 import numpy as np
+from pydantic import model_validator
 
 from roughmdr.ensemble.ensemble import Ensemble
 from roughmdr.ensemble.maps.height_map import HeightMap, map_statistics
 from roughmdr.ensemble.maps.resolution import radius_uncertainty, warning
 from roughmdr.ensemble.maps.summits import find_summits
 from roughmdr.ensemble.maps.words import implausible
+from roughmdr.ensemble.source import Source
 from roughmdr.errors import RoughmdrError
 from roughmdr.schema.quantities import EntryError
 
 Model = Literal["summits", "hills"]
 
 
-def check_shape(model: Model, shape: str | None) -> None:
-    """EntryError where a shape is given that is not that of the model."""
-    own = "paraboloid" if model == "summits" else "mdr_table"
-    if shape not in (None, own):
-        raise EntryError("shape", shape, f"is not that of model = {model!r}: {own}; leave it out")
+class MapSource(Source):
+    """A source whose asperities are the summits or hills of a map."""
+
+    of_surface: ClassVar[bool] = True
+    papers: ClassVar[dict[str, str]] = {"Greenwood2006": "roughness"}
+
+    model: Model
+    """"summits": a paraboloid each; "hills", for [interaction]: the profile of each hill."""
+    shape: Literal["paraboloid", "mdr_table"] | None = None
+    """Shape of the asperities, which decides the other keys."""
+
+    @model_validator(mode="after")
+    def _shape_of_the_model(self) -> "MapSource":
+        own = "paraboloid" if self.model == "summits" else "mdr_table"
+        if self.shape not in (None, own):
+            raise EntryError("shape", self.shape, f"is not that of model = {self.model!r}: {own}; leave it out")
+        return self
 
 
 def summits_on(surface: HeightMap, noise: float, detrend: str) -> Ensemble:

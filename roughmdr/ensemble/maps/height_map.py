@@ -41,9 +41,7 @@ def blocks(rows: int, columns: int, chunk: int = 1) -> Iterator[slice]:
 
 
 def blocks_with_neighbours(surface: HeightMap) -> Iterator[tuple[Floats, int]]:
-    """Yield blocks of rows of a map with their first rows, and a row and a column of neighbours at each side: those of
-    the next period, or else the border itself, of which no point is an inner one.
-    """
+    """Yield blocks of a map in a frame of neighbours, the next period or the border itself, with their first rows."""
     height, (nx, ny) = surface.height, surface.height.shape
     if not surface.periodic:
         yield from ((height[rows.start : rows.stop + 2], rows.start) for rows in blocks(nx - 2, ny))
@@ -70,12 +68,10 @@ def map_statistics(surface: HeightMap) -> dict[str, float | int | str]:
     nx, ny = height.shape
     scale = surface.highest or 1.0
 
-    def parts() -> Iterator[Floats]:
-        return (height[rows] / scale for rows in blocks(nx, ny))
-
     with_next = (np.arange(rows.start, rows.stop + 1) for rows in blocks(nx if periodic else nx - 1, ny))
     along_x = (np.diff(height[rows % nx], axis=0) / scale for rows in with_next)
-    along_y = (np.diff(part, axis=1, append=part[:, : int(periodic)]) for part in parts())
+    parts = (height[rows] / scale for rows in blocks(nx, ny))
+    along_y = (np.diff(part, axis=1, append=part[:, : int(periodic)]) for part in parts)
     return {
         "rms_height": mean_and_rms(surface)[1],
         "rms_slope": math.hypot(_rms(along_x) * scale / dx, _rms(along_y) * scale / dy),
@@ -100,10 +96,7 @@ def spline_mode(surface: HeightMap) -> Literal["grid-wrap", "mirror"]:
 
 
 def spline_coefficients(surface: HeightMap) -> Floats:
-    """Return the coefficients [m] of the cubic B-splines of a map at its points, shape (x, y).
-
-    Undefined points take the height of the nearest that is defined.
-    """
+    """Return the coefficients [m] of the cubic B-splines, [x, y]; undefined points take the nearest known height."""
     from scipy.ndimage import distance_transform_edt, spline_filter
 
     height = surface.height

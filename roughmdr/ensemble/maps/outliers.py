@@ -85,15 +85,13 @@ def leave_out_outliers(
 
 def _refuse_coordinates(height: Floats) -> None:
     """RoughmdrError where the first row or column counts up evenly, and the next one does not."""
-    which = {"row": height[0, 1:], "column": height[1:, 0]}
-    after = {"row": height[1, 1:], "column": height[1:, 1]}
-    found = []
-    for name, values in which.items():
-        uneven = _unevenness(values)
-        if uneven <= _EVEN and _unevenness(after[name]) > max(_UNEVEN, _LESS_EVEN * uneven):
-            found.append(name)
+    found = dict[str, float]()
+    for name, (first, after) in {"row": height[:2, 1:], "column": height.T[:2, 1:]}.items():
+        uneven = _unevenness(first)
+        if uneven <= _EVEN and _unevenness(after) > max(_UNEVEN, _LESS_EVEN * uneven):
+            found[name] = float(np.mean(np.diff(first)))
     if found:
-        steps = " and ".join(f"{float(np.mean(np.diff(which[name]))):.4g}" for name in found)
+        steps = " and ".join(f"{step:.4g}" for step in found.values())
         names, those = " and first ".join(found), "they are" if len(found) > 1 else "it is"
         nx, ny = height.shape[0] - ("row" in found), height.shape[1] - ("column" in found)
         raise RoughmdrError(
@@ -167,9 +165,7 @@ def _levelled(height: Floats, unit: str) -> Iterator[_Finding]:
 
 
 def _spikes(height: Floats, unit: str, *, periodic: bool) -> Iterator[_Finding]:
-    """Yield the points, single or in squares of four, that stand out above or below their neighbours, all but one, by
-    more than the range of these and more than other steps of the map.
-    """
+    """Yield points, single or 2 x 2, beyond all neighbours but one by more than the range of these and other steps."""
     least = _SPIKE * _LARGE * _step(height, 0.8)  # robust to spikes at up to 10 % of the points
     if not least > 0.0:
         return
@@ -241,9 +237,7 @@ def _is_frequent(value: float, number: int, levels: Floats, counts: NDArray[np.i
 
 
 def _step(height: Floats, quantile: float, without: Iterable[float] = ()) -> float:
-    """Return a quantile of the differences of neighbours that are not equal, in magnitude, in a sample of rows; without
-    those at given values, and 0 where there are none.
-    """
+    """Return a quantile of the unequal steps of neighbours, but for given values, in a sample of rows; 0 for none."""
     rows = np.arange(0, height.shape[0] - 1, -(-height.size // _SAMPLE))
     part, after = (np.where(np.isin(each, list(without)), np.nan, each) for each in (height[rows], height[rows + 1]))
     steps = np.abs(np.concatenate([(after - part).ravel(), np.diff(part, axis=1).ravel()]))

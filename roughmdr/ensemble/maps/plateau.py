@@ -147,9 +147,7 @@ def _is_white(noise: Floats) -> bool:
 
 
 def _fit(powers: Floats, height: Floats, least: float) -> Floats:
-    """Return the coefficients of a quantile, by least absolute deviations with more weight above, since tops are no
-    higher; deviations below ``least`` count as that.
-    """
+    """Return the coefficients by least absolute deviations, with more weight above, since tops are no higher."""
     weight = np.ones(height.size)
     for _ in range(_ITERATIONS):
         weighted = powers * weight[:, None]

@@ -111,9 +111,7 @@ def verdict(attrs: Mapping[str, float | int | str]) -> str:
 
 
 def warning(name: str, attrs: Mapping[str, float | int | str]) -> str:
-    """Return the warning of a map ``name`` that does not resolve its hills, or whose radii are uncertain; empty for
-    none.
-    """
+    """Return the warning of a map ``name`` that does not resolve its hills, or its summits' radii; empty for none."""
     if attrs.get("asperity_model") == "hills":
         noise = "or what it shows between neighbouring points is noise; a finer map would tell"
         return f"{name}: {verdict(attrs)}, {noise}" if float(attrs["resolution_error"]) > MAX_HILLS_ERROR else ""

@@ -2,15 +2,15 @@
 
 from functools import cached_property
 from pathlib import Path
-from typing import Annotated, ClassVar, Literal
+from typing import Annotated, Literal
 
 import numpy as np
-from pydantic import StrictBool, field_validator, model_validator
+from pydantic import StrictBool, field_validator
 
 from roughmdr.ensemble.ensemble import Ensemble
 from roughmdr.ensemble.from_file import FromFile
 from roughmdr.ensemble.maps.detrend import Trend, remove_short_waves, remove_trend
-from roughmdr.ensemble.maps.found import Model, asperities_on, check_shape, summits_on
+from roughmdr.ensemble.maps.found import MapSource, Model, asperities_on, summits_on
 from roughmdr.ensemble.maps.height_map import HeightMap, mean_and_rms
 from roughmdr.ensemble.maps.outliers import Treatment
 from roughmdr.ensemble.maps.raw_map import Size, SizeReader
@@ -26,27 +26,16 @@ _UNCUT = ("rms_height", "rms_slope", "mean_curvature_radius")
 """Attributes of an ensemble that are given for the map before the cutoff too."""
 
 
-class SurfaceAsperities(FromFile):
+class SurfaceAsperities(MapSource, FromFile):
     """[asperities] with source = "surface": the summits of the map in ``file`` (``find_summits``), or its hills.
-
-    ``size`` and ``unit`` (of the heights) describe a map whose file does not; ``channel`` chooses among the maps of a
-    file; ``periodic`` overrides the file. ``outliers`` (marks of undefined points, spikes) are "undefined", or "kept";
-    a map that has some is refused where neither is said. ``detrend`` is removed, by default "quadratic", or "mean" of a
-    periodic map; so are waves shorter than ``cutoff``.
 
     Attributes of the ensemble beside those of ``find_summits`` and ``map_statistics``: ``rms_height_raw`` [m], before
     the trend is removed; ``mean_curvature_radius`` [m], 1/<sqrt(k1 k2)>; with a cutoff ``uncut_...``, without it; and
     ``radius_uncertainty`` [1] (``resolution``). Those of hills are told by ``find_hills``.
     """
 
-    of_surface: ClassVar[bool] = True
-    papers: ClassVar[dict[str, str]] = {"Greenwood2006": "roughness"}
-
     source: Literal["surface"]
     model: Model = "summits"
-    """"summits": a paraboloid each; "hills", for [interaction]: the profile of each hill."""
-    shape: Literal["paraboloid", "mdr_table"] | None = None
-    """Shape of the asperities, which decides the other keys."""
     size: Annotated[Size | None, SizeReader()] = None
     """Side of the map, or both along x and y, or { across, down } the rows of its file, which does not say."""
     unit: str | None = None
@@ -61,11 +50,6 @@ class SurfaceAsperities(FromFile):
     """Shorter waves are removed."""
     outliers: Treatment | None = None
     """Marks of undefined points and spikes become "undefined", or are "kept". Default: they are refused."""
-
-    @model_validator(mode="after")
-    def _shape_of_the_model(self) -> "SurfaceAsperities":
-        check_shape(self.model, self.shape)
-        return self
 
     @field_validator("unit")
     @classmethod

@@ -68,9 +68,7 @@ def find_summits(surface: HeightMap, noise: float = 0.0) -> Ensemble:
 
 
 def _fit(part: Floats, first: int, edge: float, noise: float) -> _Fits:
-    """Fit paraboloids to the summits among the inner points of a block, the first of which on the map is as far from
-    the ``edge`` of the patch, in spacings.
-    """
+    """Fit paraboloids to the summits inside a block, whose first point is ``first`` + ``edge`` off the edge."""
     inner = part[1:-1, 1:-1]
 
     def neighbours(i: int, j: int) -> Floats:

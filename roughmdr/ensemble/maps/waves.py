@@ -5,7 +5,6 @@ from typing import NamedTuple
 import numpy as np
 
 from roughmdr.ensemble.maps.height_map import HeightMap, blocks, blocks_with_neighbours, map_statistics, mean_and_rms
-from roughmdr.numerics.arguments import Floats
 from roughmdr.spectrum import MapSpectrum, Moments
 
 _BINS = 400  # number of bins of the wave number, equal on a logarithmic scale
@@ -36,8 +35,7 @@ class MapWaves(NamedTuple):
 def slope_ratio(surface: HeightMap) -> float:
     """Return the ratio of the r.m.s. slopes across and along the ridges of a map, at least 1.
 
-    Those are the roots of the eigenvalues of <grad h grad h>, over the points whose next along x and along y is
-    defined.
+    They are the roots of the eigenvalues of <grad h grad h>, over points whose next along x and along y is defined.
     """
     height, dx, dy, periodic = surface[:4]
     nx, ny = height.shape
@@ -70,7 +68,7 @@ def mean_square_laplacian(surface: HeightMap) -> float:
 
 
 def _spectrum(surface: HeightMap, mean: float) -> MapSpectrum:
-    """Return the variance in bins of the wave number; a map that is not periodic is tapered by Hann's window."""
+    """Return the variance in bins of one mean square slope each; Hann's window tapers a map that is not periodic."""
     from scipy import fft
 
     nx, ny = surface.height.shape
@@ -82,12 +80,7 @@ def _spectrum(surface: HeightMap, mean: float) -> MapSpectrum:
     variance = np.abs(fft.rfft2(height, overwrite_x=True)) ** 2 / float(nx * ny) ** 2
     variance[:, 1 : (ny + 1) // 2] *= 2.0  # of the waves of negative numbers along y too
     q = 2.0 * np.pi * np.hypot(fft.fftfreq(nx, surface.dx)[:, None], fft.rfftfreq(ny, surface.dy))
-    kept = q > 0.0
-    return _binned(q[kept], variance[kept])
-
-
-def _binned(q: Floats, variance: Floats) -> MapSpectrum:
-    """Return waves in bins, each with the mean square slope of its waves."""
+    q, variance = q[q > 0.0], variance[q > 0.0]
     log_q = np.log(q / q.min())
     numbers = np.minimum((log_q * (_BINS / log_q.max())).astype(np.int64), _BINS - 1)
     of_heights, of_slopes = (

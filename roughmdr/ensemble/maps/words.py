@@ -75,9 +75,7 @@ _HEIGHTS = 1e-11, 1e-2
 
 
 def implausible(attrs: Mapping[str, float | int | str]) -> str:
-    """Return which numbers of a map, from the attributes of its ensemble, are impossible with a correct size and unit;
-    empty for none.
-    """
+    """Return which numbers of a map, from its attributes, no correct size and unit have; empty for none."""
     slope, height = float(attrs["rms_slope"]), float(attrs["rms_height"])
     sides = [float(attrs[name]) for name in ("patch_x", "patch_y")]
     reasons = []

@@ -3,6 +3,7 @@
 import math
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from typing import cast
 
 import numpy as np
 
@@ -54,10 +55,7 @@ class Distribution:
 
     @property
     def _family(self) -> Family:
-        family = find_family(self.family)
-        if family is None:
-            raise AssertionError("checked when the distribution was read")
-        return family
+        return cast(Family, find_family(self.family))  # checked when the distribution was read
 
     def _untruncated_fractions(self, values: Floats) -> tuple[Floats, Floats]:
         """Return the fractions of the untruncated distribution below and above values."""

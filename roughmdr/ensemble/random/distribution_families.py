@@ -118,18 +118,8 @@ def find_family(name: str) -> Family | None:
     import scipy.stats
 
     family = getattr(scipy.stats, name, None)
-    return _from_scipy(family) if isinstance(family, scipy.stats.rv_continuous) else None
-
-
-def known_families() -> list[str]:
-    """Return the names of all families."""
-    import scipy.stats
-
-    names = [name for name in dir(scipy.stats) if isinstance(getattr(scipy.stats, name), scipy.stats.rv_continuous)]
-    return sorted({*FAST_FAMILIES, *names})
-
-
-def _from_scipy(family: Any) -> Family:
+    if not isinstance(family, scipy.stats.rv_continuous):
+        return None
     functions = (family.ppf, family.isf, family.cdf, family.sf, family.pdf)
     return Family(
         () if family.shapes is None else tuple(family.shapes.split(", ")),
@@ -137,6 +127,15 @@ def _from_scipy(family: Any) -> Family:
         lru_cache(maxsize=256)(_quiet(partial(_checked_moments, family))),
         *(_quiet(_nan_for_errors(function)) for function in functions),
     )
+
+
+@cache
+def known_families() -> list[str]:
+    """Return the names of all families."""
+    import scipy.stats
+
+    names = [name for name in dir(scipy.stats) if isinstance(getattr(scipy.stats, name), scipy.stats.rv_continuous)]
+    return sorted({*FAST_FAMILIES, *names})
 
 
 def _nan_for_errors(function: Callable[..., Floats]) -> Callable[..., Floats]:

@@ -1,4 +1,4 @@
-"""Read a distribution as a scene gives it: a plain quantity, or a table with the name of a family and parameters."""
+"""Read a distribution as a scene gives it, a plain quantity or a table of a family and parameters; its JSON Schema."""
 
 import math
 from dataclasses import dataclass
@@ -7,18 +7,27 @@ from functools import lru_cache
 from roughmdr.ensemble.random.distribution import Distribution
 from roughmdr.ensemble.random.distribution_families import ALIASES, Family, find_family, known_families
 from roughmdr.errors import RoughmdrError
-from roughmdr.schema.json_schema import JsonSchema, of_any_type
+from roughmdr.schema.json_schema import JsonSchema, described, of_any_type
 from roughmdr.schema.quantities import EntryError, Quantity, Reader
 from roughmdr.schema.units import DIMENSIONLESS, format_quantity, quantity
 from roughmdr.schema.wording import close_matches
 
-COMMON = ("loc", "scale", "mean", "std", "min", "max")  # parameters of every family, in the unit of the quantity
+_COMMON = {
+    "loc": "scipy's loc. Default: 0",
+    "scale": "scipy's scale",
+    "mean": "Mean, to which the distribution is moved",
+    "std": "Standard deviation, to which it is stretched",
+    "min": "Least value: those below are not drawn",
+    "max": "Greatest value: those above are not drawn",
+}
+"""Parameters of every family, in the unit of the quantity, with their meaning in the JSON Schema."""
+_FAMILIES = "families_of_distributions"  # name of the schema that tells which family has which parameters
 _LOCATION = ("loc", "mean", "std")  # any of these determines it: std together with the default mean
 _MIN_FRACTION = 1e-200  # least probability that a truncated distribution keeps: less has no digits left
 _MIN_PARAMETER, _MAX_PARAMETER = 1e-12, 1e12  # limits of a parameter's magnitude: far beyond, scipy can crash
 
 
-def definition_of(dimension: str) -> str:
+def _definition_of(dimension: str) -> str:
     """Return the name of the JSON Schema of the table of a distribution."""
     return "distribution" if dimension == DIMENSIONLESS else f"distribution_of_{dimension}"
 
@@ -61,17 +70,17 @@ class DistributionReader(Reader):
         """Return the names of the parameters that an entry can have."""
         given = value.get("distribution") if isinstance(value, dict) else None
         family = find_family(ALIASES.get(given, given)) if isinstance(given, str) else None
-        return [*(family.parameters if family else ()), *COMMON]
+        return [*(family.parameters if family else ()), *_COMMON]
 
     def parameter(self, name: str) -> Quantity:
         """Return the reader of one parameter of the table."""
         above = 0.0 if name in ("std", "scale") else None
-        return Quantity(self.dimension if name in COMMON else DIMENSIONLESS, above=above)
+        return Quantity(self.dimension if name in _COMMON else DIMENSIONLESS, above=above)
 
     def json_schema(self) -> JsonSchema:
         """Return the schema of a plain quantity or a table, which is ``distribution_schemas`` to describe."""
         plain = Quantity(self.dimension, above=0.0 if self.positive else None).json_schema()
-        defined = [{"$ref": f"#/$defs/{definition_of(self.dimension)}"}]
+        defined = [{"$ref": f"#/$defs/{_definition_of(self.dimension)}"}]
         return of_any_type(plain, {"type": "object", "required": ["distribution"], "allOf": defined})
 
     def __str__(self) -> str:
@@ -154,7 +163,7 @@ def _located(
 def _own_parameters(family: Family, given: str, numbers: dict[str, float]) -> tuple[float, ...]:
     missing = [name for name in family.parameters if name not in numbers]
     if missing:
-        allowed = ", ".join((*family.parameters, *COMMON))
+        allowed = ", ".join((*family.parameters, *_COMMON))
         raise RoughmdrError(f"{given} needs {' and '.join(missing)}; it takes {allowed}")
     if "std" not in numbers and "scale" not in numbers:
         raise RoughmdrError(f"{given} needs a std or a scale")
@@ -169,3 +178,43 @@ def _own_parameters(family: Family, given: str, numbers: dict[str, float]) -> tu
 
 def _listed(numbers: dict[str, float]) -> str:
     return ", ".join(f"{key} = {value:g}" for key, value in numbers.items())
+
+
+def distribution_names() -> list[str]:
+    """Return all names of distributions that a scene can have, the usual ones first."""
+    return [*ALIASES, *known_families()]
+
+
+def own_parameters() -> dict[tuple[str, ...], list[str]]:
+    """Return the names of distributions by the parameters that they have of their own."""
+    names: dict[tuple[str, ...], list[str]] = {}
+    for name in distribution_names():
+        family = find_family(ALIASES.get(name, name))
+        names.setdefault(() if family is None else family.parameters, []).append(name)
+    return names
+
+
+def distribution_schemas() -> dict[str, JsonSchema]:
+    """Return the definitions that ``DistributionReader.json_schema`` refers to, by name."""
+    families = own_parameters()
+    own = dict.fromkeys(name for parameters in families for name in parameters)
+    of_family = described(Quantity(DIMENSIONLESS).json_schema(), "a parameter of the family, as scipy.stats has it")
+    tables = {}
+    for dimension in ("m", DIMENSIONLESS):
+        reader = DistributionReader(dimension)
+        common = {name: described(reader.parameter(name).json_schema(), text) for name, text in _COMMON.items()}
+        chosen = {"distribution": described({"enum": distribution_names()}, "a continuous distribution of scipy.stats")}
+        tables[_definition_of(dimension)] = {
+            "properties": {**chosen, **common, **dict.fromkeys(own, of_family)},
+            "additionalProperties": False,
+            "allOf": [{"$ref": f"#/$defs/{_FAMILIES}"}],
+        }
+    return {**tables, _FAMILIES: {"allOf": [_family(*each) for each in families.items()]}}
+
+
+def _family(parameters: tuple[str, ...], names: list[str]) -> JsonSchema:
+    """Return the rule that these distributions have no other parameters."""
+    return {
+        "if": {"properties": {"distribution": {"enum": names}}, "required": ["distribution"]},
+        "then": {"propertyNames": {"enum": ["distribution", *parameters, *_COMMON]}},
+    }

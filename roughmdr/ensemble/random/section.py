@@ -15,8 +15,7 @@ from roughmdr.ensemble.nodes import Nodes, Rule
 from roughmdr.ensemble.patch_source import MAX_COUNT, PatchSource
 from roughmdr.ensemble.random.distribution import Distribution
 from roughmdr.ensemble.random.distribution_reader import DistributionReader
-from roughmdr.ensemble.random.population import Population, Populations
-from roughmdr.ensemble.random.population_nodes import nodes_of
+from roughmdr.ensemble.random.population import Population, Populations, nodes_of
 from roughmdr.ensemble.streams import HEIGHT, PARAMETER, Streams, make_streams, poisson
 from roughmdr.errors import RoughmdrError
 from roughmdr.numerics.arguments import Floats
@@ -67,10 +66,7 @@ class RandomAsperities(PatchSource):
     correlation: Correlation | None = None
     """Spearman's rank correlation of the height with one shape parameter."""
 
-    @model_validator(mode="before")
-    @classmethod
-    def _fill_lattice(cls, table: Any) -> Any:
-        return with_sites_counted(table)
+    _fill_lattice = model_validator(mode="before")(with_sites_counted)
 
     @model_validator(mode="after")
     def _check_parameters_and_count(self) -> "RandomAsperities":
@@ -228,10 +224,8 @@ class RandomAsperities(PatchSource):
     ) -> Ensemble:
         """Return the asperities of one realisation; of a density, stratified ones are the mean number, rounded."""
         streams = make_streams(seed, realization, self.populations.random_streams if stratified else ())
-        if self.count is not None or stratified:
-            count = round(self.expected_count)
-        else:
-            count = poisson(streams, self.expected_count)
+        is_fixed = self.count is not None or stratified
+        count = round(self.expected_count) if is_fixed else poisson(streams, self.expected_count)
         positions = self.positions(streams, count) if with_positions else {}
         attrs = {**self.patch_attrs, "seed": seed, "realization": realization}
         return self._drawn(streams, count, positions, attrs)

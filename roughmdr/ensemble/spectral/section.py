@@ -3,17 +3,17 @@
 import math
 from dataclasses import replace
 from functools import cached_property
-from typing import Annotated, ClassVar, Literal
+from typing import Annotated, Literal
 
 import numpy as np
 from pydantic import ValidationInfo, field_validator, model_validator
 
 from roughmdr.ensemble.ensemble import Ensemble
 from roughmdr.ensemble.gaussian.summit_distribution import SummitDistribution
-from roughmdr.ensemble.maps.found import Model, asperities_on, check_shape
+from roughmdr.ensemble.maps.found import MapSource, Model, asperities_on
 from roughmdr.ensemble.maps.height_map import HeightMap
 from roughmdr.ensemble.random.distribution_families import ndtri
-from roughmdr.ensemble.source import Patch, Source
+from roughmdr.ensemble.source import Patch
 from roughmdr.ensemble.spectral.surface import Waves
 from roughmdr.ensemble.streams import WAVES, make_streams
 from roughmdr.errors import OutOfRange, RoughmdrError
@@ -26,7 +26,7 @@ _MARGIN = 1.02  # least number of points over twice the waves along a side
 _ROUNDING = 1e-13  # rounding error of the Fourier transform, over the r.m.s. height
 
 
-class SpectrumAsperities(Source):
+class SpectrumAsperities(MapSource):
     """[asperities] with source = "spectrum": maps of a Gaussian surface that repeats with ``patch``, and their hills.
 
     The spectrum is self-affine between ``long_wave`` and ``short_wave``, and 0 elsewhere: that of source "nayak". With
@@ -34,14 +34,8 @@ class SpectrumAsperities(Source):
     shortest wave. The mean over realisations of <h^2>, or of the squared slope, is the one given.
     """
 
-    of_surface: ClassVar[bool] = True
-    papers: ClassVar[dict[str, str]] = {"Greenwood2006": "roughness"}
-
     source: Literal["spectrum"]
     model: Model = "hills"
-    """"summits": a paraboloid each; "hills", for [interaction]: the profile of each hill."""
-    shape: Literal["paraboloid", "mdr_table"] | None = None
-    """Shape of the asperities, which decides the other keys."""
     patch: Patch
     """Side of the square nominal area, or of the square of the same area where a lattice has an oblong one."""
     hurst: Annotated[float, HURST]
@@ -69,7 +63,6 @@ class SpectrumAsperities(Source):
 
     @model_validator(mode="after")
     def _check_surface(self) -> "SpectrumAsperities":
-        check_shape(self.model, self.shape)
         if (self.rms_height is None) == (self.rms_slope is None):
             raise RoughmdrError("source 'spectrum' takes one of rms_height and rms_slope")
         longest = self.long_wave * math.sqrt(self.anisotropy)

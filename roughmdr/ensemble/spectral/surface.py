@@ -25,8 +25,7 @@ class Waves(NamedTuple):
 
     @classmethod
     def of(cls, spectrum: SelfAffine, patch: float, anisotropy: float, *, rms_slope: float | None) -> "Waves":
-        """Return the waves of a spectrum of which all lengths along x are stretched by the root of ``anisotropy``, and
-        those along y compressed by as much.
+        """Return the waves of a spectrum, lengths along x stretched by the root of ``anisotropy``, along y compressed.
 
         The mean of h^2 over realisations is that of the spectrum, or the mean square slope that of ``rms_slope``.
         """
@@ -49,9 +48,7 @@ class Waves(NamedTuple):
 
     @property
     def moments(self) -> Moments:
-        """Moments of a profile of the isotropic surface; stretching it changes neither heights nor density of summits,
-        nor the products of their curvatures.
-        """
+        """Moments of a profile of the isotropic surface; stretched, its summits keep heights, density and radii."""
         squared = self.q * self.q
         m0, m2, m4 = (math.fsum(self.variance * squared**k) for k in range(3))
         return Moments(m0, 0.5 * m2, 0.375 * m4)

@@ -8,7 +8,6 @@ import math
 from functools import partial
 from typing import NamedTuple
 
-from roughmdr.ensemble.maps.height_map import HeightMap, spline_coefficients
 from roughmdr.numerics.arguments import Floats
 from roughmdr.numerics.jit import njit
 
@@ -17,8 +16,6 @@ _inlined = partial(njit, small=True)  # a call would count the references to eve
 RAYS, STEPS = 32, 96
 REACH = 3.0
 """Length of a ray, in wavelengths of the map (``find.wavelength``)."""
-
-
 _CLIMBS, _CLIMB = 10, 0.02  # steps towards a summit along both axes, and their length at most
 
 
@@ -31,11 +28,6 @@ class Spline(NamedTuple):
     """[wavelength]."""
     spacing_y: float
     periodic: bool
-
-    @classmethod
-    def of(cls, surface: HeightMap, wavelength: float) -> "Spline":
-        """Return the spline of a map; undefined points take the height of the nearest that is defined."""
-        return cls(spline_coefficients(surface), surface.dx / wavelength, surface.dy / wavelength, surface.periodic)
 
 
 class Territory(NamedTuple):
@@ -75,9 +67,10 @@ def _basis(u: float) -> tuple[float, float, float, float]:
 
 
 @_inlined
-def map_height(spline: Spline, row: float, column: float) -> float:
-    """Return the height of the map [m] between its points."""
-    c, periodic = spline.coefficients, spline.periodic
+def raw_height(hill: Territory, x: float, y: float) -> float:
+    """Return the height of the map [m] at a position [wavelength] from the summit."""
+    c, periodic = hill.map.coefficients, hill.map.periodic
+    row, column = hill.row + x / hill.map.spacing_x, hill.column + y / hill.map.spacing_y
     nx, ny = c.shape
     i, j = math.floor(row), math.floor(column)
     along_x, along_y = _basis(row - i), _basis(column - j)
@@ -97,12 +90,6 @@ def map_height(spline: Spline, row: float, column: float) -> float:
 
 
 @_inlined
-def raw_height(hill: Territory, x: float, y: float) -> float:
-    """Return the height of the map [m] at a position [wavelength] from the summit."""
-    return map_height(hill.map, hill.row + x / hill.map.spacing_x, hill.column + y / hill.map.spacing_y)
-
-
-@_inlined
 def on_map(hill: Territory, x: float, y: float) -> bool:
     """Return whether a position [wavelength] from the summit is on the map, and not beyond its border."""
     row, column = hill.row + x / hill.map.spacing_x + 0.5, hill.column + y / hill.map.spacing_y + 0.5
@@ -115,14 +102,9 @@ def top_of(hill: Territory) -> tuple[float, float]:
     """Return the position of the summit [wavelength], relative to the top of the paraboloid through its points."""
     x = y = 0.0
     for _ in range(_CLIMBS):
-        for axis in range(2):
-            dx, dy = (_CLIMB, 0.0) if axis == 0 else (0.0, _CLIMB)
-            here, above, below = (
-                raw_height(hill, x, y),
-                raw_height(hill, x + dx, y + dy),
-                raw_height(hill, x - dx, y - dy),
-            )
-            bend = above + below - 2.0 * here
+        for dx, dy in ((_CLIMB, 0.0), (0.0, _CLIMB)):
+            above, below = raw_height(hill, x + dx, y + dy), raw_height(hill, x - dx, y - dy)
+            bend = above + below - 2.0 * raw_height(hill, x, y)
             if bend < 0.0:
                 move = min(max(0.5 * (below - above) / bend, -1.0), 1.0)
                 x, y = x + move * dx, y + move * dy
