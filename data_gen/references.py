@@ -18,9 +18,9 @@ from typing import Any, NamedTuple
 import click
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "pipelines"))
-from oracles.jkr import ENERGY_WRITTEN, WRITTEN, Asperity
+from oracles.jkr import ENERGY_WRITTEN, WRITTEN, Asperity, Branch
 from oracles.multiprecision import Number, digits, mp
-from oracles.profiles import Parameters, knot_slopes, profile_of
+from oracles.profiles import Parameters, Profile, knot_slopes, profile_of
 
 WORKING = 100  # digits carried. Next to a corner fold a - b may be 1e-32 of b, so far more than the 40 that are written
 DISTANCES = {
@@ -33,6 +33,20 @@ DECADES = {"indentation": (-8.0, -5.0, -2.0, -0.5, 0.4, 3.0), "force": (-8.0, -4
 """Without adhesion: powers of ten of the rise, and of effective_modulus * width * rise."""
 ENERGY_DECADES = (-2.0, 0.4)
 CASES: dict[str, list[dict[str, Any]]] = json.loads(Path(__file__).with_name("reference_cases.json").read_text())
+
+
+class Punch(Asperity):
+    """A flat punch, which has no slope to integrate: its contact is as wide as it is until it lets go (Kendall)."""
+
+    def branches(self, control: str) -> list[Branch]:
+        """Return the one branch, from where it lets go, at delta = -dl(width)."""
+        return [Branch(self.width, None, self.state(self.width)[control])]
+
+    def solve(self, branches: list[Branch], control: str, value: float) -> dict[str, Number]:
+        """Return the state with ``control`` = ``value``."""
+        k, given = 2 * self.effective_modulus * self.width, mp.mpf(value)
+        delta, force = (given, k * given) if control == "indentation" else (given / k, given)
+        return {"contact_radius": self.width, "indentation": delta, "force": force, "stiffness": k}
 
 
 class Case(NamedTuple):
@@ -60,7 +74,7 @@ def table(case: Case) -> dict[str, Any]:
     """Return the entry of one case."""
     with mp.workdps(WORKING):
         entry = head(case.shape, case.parameters, modulus=case.effective_modulus, work=case.work)
-        rows = punch_rows(case, entry) if case.shape == "flat_punch" else asperity_rows(case, entry)
+        rows = asperity_rows(case, entry)
         return {**entry, "rows": rows}
 
 
@@ -70,29 +84,11 @@ def head(shape: str, parameters: Parameters, **numbers: float) -> dict[str, Any]
     return {"parameters": parameters, **slopes, **numbers}
 
 
-def punch_rows(case: Case, entry: dict[str, Any]) -> list[dict[str, Any]]:
-    """A flat punch has no slope to integrate: a = b, and Kendall's pull-off at delta = -dl(b)."""
-    b, effective_modulus, work = (mp.mpf(x) for x in (case.parameters["radius"], case.effective_modulus, case.work))
-    k = 2 * effective_modulus * b
-    lost = -mp.sqrt(2 * mp.pi * b * work / effective_modulus)
-    end = {"contact_radius": b, "indentation": lost, "force": k * lost}
-    if work > 0:
-        entry["pull_off"] = dict.fromkeys(("displacement", "force"), written(end))
-    rows = []
-    for control in DISTANCES:
-        for value, energy in values(case, control, end[control]):
-            given = mp.mpf(value)
-            delta, force = (given, k * given) if control == "indentation" else (given / k, given)
-            state = {"contact_radius": b, "indentation": delta, "force": force, "stiffness": k}
-            found = effective_modulus * b * delta**2 - mp.pi * work * b**2 if energy else None
-            rows.append(row(control, value, state, found))
-    return rows
-
-
 def asperity_rows(case: Case, entry: dict[str, Any]) -> list[dict[str, Any]]:
-    """Return the rows of every other shape; fills in the pull-off of ``entry``."""
-    profile = profile_of(case.shape, case.parameters)
-    asperity = Asperity(profile, case.effective_modulus, case.work, case.width)
+    """Return the rows of a case; fills in the pull-off of ``entry``."""
+    punch = case.shape == "flat_punch"
+    profile = Profile([]) if punch else profile_of(case.shape, case.parameters)
+    asperity = (Punch if punch else Asperity)(profile, case.effective_modulus, case.work, case.width)
     rows = []
     for control in DISTANCES:
         branches = asperity.branches(control)

@@ -9,7 +9,6 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from benchmarks.process import peak_memory
 from roughmdr.batch.plan import Plan, make_plan
 from roughmdr.batch.realization import simulate_realization
 from roughmdr.batch.rounds import Rounds
@@ -17,6 +16,7 @@ from roughmdr.batch.tasks import prepare_all
 from roughmdr.runner.backend import Backend
 from roughmdr.runner.run import execute
 from roughmdr.scene import Scene, read
+from roughmdr.storage.memory import peak_memory
 
 WORKS = 100  # values of the first swept key; the second one has as many as make the number of cells
 HEIGHT = {"distribution": "normal", "std": "1 um"}
@@ -58,7 +58,7 @@ def _timed(plan: Plan) -> tuple[float, float]:
         return time.perf_counter() - started, float(result.variables["run_time"].values.sum())
 
 
-def _cost_of(action: Callable[[], object]) -> tuple[float, int]:
+def _cost_of(action: Callable[[], object]) -> tuple[float, float]:
     """Return the time [s] of an action, and the most memory [byte] that it takes above what is taken before."""
     Path("/proc/self/clear_refs").write_text("5")  # the peak begins anew
     before, started = peak_memory(), time.perf_counter()
@@ -97,7 +97,7 @@ def ensemble(count: int) -> dict[str, float]:
             "asperity_memory": memory / count}  # fmt: skip
 
 
-def load_separation(section: dict[str, Any], path: list[float], arguments: dict[str, Any]) -> tuple[float, int]:
+def load_separation(section: dict[str, Any], path: list[float], arguments: dict[str, Any]) -> tuple[float, float]:
     """Measure the time [s] of rm.load_separation, and its memory [byte] above that of the ensemble."""
     import roughmdr as rm
 
@@ -106,7 +106,7 @@ def load_separation(section: dict[str, Any], path: list[float], arguments: dict[
     return _cost_of(lambda: rm.load_separation(asperities, separation=path, **arguments))
 
 
-def run_command(arguments: list[str]) -> int:
+def run_command(arguments: list[str]) -> float:
     """Run a command of roughmdr and return its peak memory [byte]."""
     from roughmdr.cli import main
 

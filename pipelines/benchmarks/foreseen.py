@@ -41,7 +41,7 @@ def measure(quick: bool) -> xr.Dataset:
             command = ["run", str(_STARTER), "-o", f"{folder}/result.nc", "--quiet", "--fresh", *changes]
             started = time.perf_counter()
             size = in_new_process(run_command, command)
-            rows.append([[planned.seconds, time.perf_counter() - started], [planned.memory, float(size)]])
+            rows.append([[planned.seconds, time.perf_counter() - started], [planned.memory, size]])
     seconds, memory = np.moveaxis(np.array(rows), 1, 0)
     return xr.Dataset(
         {

@@ -25,9 +25,3 @@ def in_new_process(function: Callable[..., Any], *arguments: Any, **environment:
     if done.returncode:
         raise RuntimeError(done.stderr)
     return json.loads(done.stdout.splitlines()[-1])
-
-
-def peak_memory() -> int:
-    """Return the bytes that this process has taken at most so far. Needs /proc."""
-    status = Path("/proc/self/status").read_text().splitlines()
-    return next(1024 * int(line.split()[1]) for line in status if line.startswith("VmHWM"))

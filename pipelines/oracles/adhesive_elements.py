@@ -40,11 +40,6 @@ class _Balance(NamedTuple):
     pull: Floats  # the attraction
     slope: Floats  # elastic traction and attraction together, which where the gap is 0 the pressure takes up
 
-    @property
-    def mean(self) -> float:
-        """The mean pressure less the mean attraction."""
-        return float(np.mean(self.slope - self.pull))
-
 
 class AdhesiveMap:
     """Heights on a periodic square grid over ``size``, facing a half-space of modulus 1.

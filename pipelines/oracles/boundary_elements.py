@@ -13,7 +13,6 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from roughmdr.elements.half_space import connected
 from roughmdr.errors import OutOfRange
@@ -85,17 +84,12 @@ def by_perimeter(pressure: Floats) -> float:
     return float(np.count_nonzero(loaded) - _EDGE_SHARE * sides) / pressure.size
 
 
-def label_contacts(pressure: Floats) -> NDArray[np.int64]:
-    """Return the number of each cell's contact, 0 outside; cells that share a side, across the rim too, are in one."""
-    return connected(pressure > 0.0, across=True)[0]
-
-
 def of_half_ellipsoids(pressure: Floats) -> float:
     """Return the area of separated contacts of paraboloids, whose pressure is half an ellipsoid: 9/8 (∫p)²/∫p² each.
 
     Neighbours change that shape of the pressure only in the fourth derivative of the displacement.
     """
-    contact = label_contacts(pressure).ravel()
+    contact = connected(pressure > 0.0, across=True)[0].ravel()
     first, second = (np.bincount(contact, pressure.ravel() ** power) for power in (1, 2))
     loaded = second > 0.0
     return 1.125 * float(np.sum(first[loaded] ** 2 / second[loaded])) / pressure.size

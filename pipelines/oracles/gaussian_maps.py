@@ -70,26 +70,21 @@ class Series:
         return cls((np.fft.fft2(height) / height.size)[np.ix_(waves, waves)], size)
 
     @property
-    def _waves(self) -> NDArray[np.int64]:
+    def _waves(self) -> tuple[NDArray[np.int64], Floats]:
+        """The waves along a side, and their wave numbers [1/m]."""
         order = self.amplitudes.shape[0] // 2
-        return np.arange(-order, order + 1)
-
-    @property
-    def _numbers(self) -> Floats:
-        """Wave numbers [1/m] along a side."""
-        return np.asarray(2.0 * np.pi / self.size * self._waves)
+        waves = np.arange(-order, order + 1)
+        return waves, 2.0 * np.pi / self.size * waves
 
     def on_grid(self, points: int, along_x: int = 0, along_y: int = 0) -> Floats:
         """Return heights [m], or derivatives of these orders along x and y, on points x points."""
-        q, whole = self._numbers, np.zeros((points, points), dtype=np.complex128)
-        whole[np.ix_(self._waves, self._waves)] = (
-            self.amplitudes * (1j * q[:, None]) ** along_x * (1j * q[None, :]) ** along_y
-        )
+        (waves, q), whole = self._waves, np.zeros((points, points), dtype=np.complex128)
+        whole[np.ix_(waves, waves)] = self.amplitudes * (1j * q[:, None]) ** along_x * (1j * q[None, :]) ** along_y
         return np.asarray(np.fft.ifft2(whole).real * points**2)
 
     def at(self, x: Floats, y: Floats) -> list[Floats]:
         """Return heights [m] and DERIVATIVES at points [m]."""
-        q = self._numbers
+        _, q = self._waves
         from_x, from_y = np.exp(1j * np.outer(x, q)), np.exp(1j * np.outer(y, q))
         rows = [(from_x * (1j * q) ** m) @ self.amplitudes for m in range(3)]
         columns = [from_y * (1j * q) ** n for n in range(3)]

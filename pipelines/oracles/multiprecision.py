@@ -41,14 +41,11 @@ def root(function: Callable[[Number], Number], low: Number, high: Number) -> Num
 
 def bracket(function: Callable[[Number], Number]) -> tuple[Number, Number]:
     """Return arguments at which a growing ``function`` is negative and positive, near 0 where possible."""
-    step = mp.mpf(2)
-    low, high = mp.mpf(0), mp.mpf(0)
-    if function(low) > 0:
-        while function(low) > 0:
-            high, low, step = low, low - step, step * 2
-    else:
-        while function(high) <= 0:
-            low, high, step = high, high + step, step * 2
+    low, high, step = mp.mpf(0), mp.mpf(0), mp.mpf(2)
+    while function(low) > 0:
+        high, low, step = low, low - step, step * 2
+    while function(high) <= 0:
+        low, high, step = high, high + step, step * 2
     return low, high
 
 

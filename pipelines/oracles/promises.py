@@ -37,8 +37,8 @@ def natural_scales(exact: JkrPowerLaw) -> list[Number]:
         return []
     grips, dead_load = exact.fold("indentation"), exact.fold("force")
     stiffness = 2 * exact.effective_modulus * grips
-    forces = [exact.force(grips), exact.force(dead_load), stiffness * exact.dl(grips)]
-    return [grips, exact.indentation(grips), stiffness, *forces]
+    forces = [exact.state(grips)["force"], exact.state(dead_load)["force"], stiffness * exact.dl(grips)]
+    return [grips, exact.state(grips)["indentation"], stiffness, *forces]
 
 
 def numbers_at(exact: JkrPowerLaw, a: Number) -> list[Number]:
@@ -49,24 +49,25 @@ def numbers_at(exact: JkrPowerLaw, a: Number) -> list[Number]:
 def judge(exact: JkrPowerLaw, control: str, got: Results) -> dict[str, Judged]:
     """Return the errors of a contact without adhesion or under JKR adhesion, except of what no float can hold."""
     branch = "force" if control == "force" else "indentation"
-    a, value, fold = mp.mpf(got["contact_radius"]), mp.mpf(got[control]), exact.fold(branch)
+    value = mp.mpf(got[control])
     true = value if control == "contact_radius" else exact.radius(control, value)
-    X = 1 - exact.under(branch, true) / exact.under(branch, fold) if exact.work else mp.mpf(1)
+    state, there, fold = (exact.state(a) for a in (true, mp.mpf(got["contact_radius"]), exact.fold(branch)))
+    X = 1 - state[branch] / fold[branch] if exact.work else mp.mpf(1)
     forward = mp.mpf("1e-12") + mp.mpf("3e-16") / mp.sqrt(X)
     found = {
-        "contact_radius": (abs(a - true) / true, forward, true),
+        "contact_radius": (abs(there["contact_radius"] - true) / true, forward, true),
         "contact_area": (abs(got["contact_area"] / (mp.pi * true**2) - 1), 2 * forward, true**2),
     }
     pressed = {"indentation": exact.g(true), "force": 2 * exact.effective_modulus * exact.reduced_load(true)}
     for name, compression in pressed.items():
-        scale = max(abs(exact.under(name, true)), abs(exact.under(name, fold)))
+        scale = max(abs(state[name]), abs(fold[name]))
         given = name == control or (name == "indentation" and control == "contact_radius")
         # Each of the four roundings that make a (of its scale, the growth, the product, and a itself) moves g by n u.
         steepness = max(1, 4 * exact.n * UNIT * compression / scale / mp.mpf("1e-14"))
         bound = mp.mpf("1e-14" if given else "1e-13") * steepness
-        found[f"backward {name}"] = abs(exact.under(name, a) - got[name]) / scale, bound, scale
-        found[name] = abs(exact.under(name, true) - got[name]) / scale, forward, scale
-    k = exact.state(true)["stiffness"]
+        found[f"backward {name}"] = abs(there[name] - got[name]) / scale, bound, scale
+        found[name] = abs(state[name] - got[name]) / scale, forward, scale
+    k = state["stiffness"]
     k_error = abs(got["stiffness"] - k) / max(abs(k), 2 * exact.effective_modulus * true)
     found["stiffness"] = k_error, mp.mpf("1e-12") + mp.mpf("1e-15") / X, k
     return _as_floats(found)

@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 import xarray as xr
-from oracles.exact_contact import ExactContact, ExactPunch
+from oracles.jkr import ExactContact, ExactPunch
 from oracles.multiprecision import Number, mp
 
 import roughmdr as rm

@@ -23,9 +23,9 @@ from roughmdr.kernels.interface import Columns
 from roughmdr.loading.path import LoadingPath
 from roughmdr.loading.pull_off import WITHOUT_TENSION, PullOff, locate, prepare as prepare_pull_off, unloadings
 from roughmdr.loading.staircase import no_memory
-from roughmdr.model_error import Assumptions, Givens, crowd_warnings
 from roughmdr.model_error.interaction import overlap_share, poisson_overlap
-from roughmdr.model_error.parts import Yielding
+from roughmdr.model_error.parts import Assumptions, Yielding
+from roughmdr.model_error.refusal import Givens, crowd_warnings
 from roughmdr.numerics.arguments import Floats
 from roughmdr.shapes import SHAPES
 

@@ -18,7 +18,6 @@ from roughmdr.interaction.totals import CROWDING
 from roughmdr.loading.machine import MachinePath
 from roughmdr.loading.path import LoadingPath
 from roughmdr.loading.pull_off import PullOff
-from roughmdr.model_error import Assumptions, Givens
 from roughmdr.model_error.conductance import coupled_conductance_error
 from roughmdr.model_error.coupling import (
     HILLS_MARKED_FRACTION,
@@ -28,6 +27,8 @@ from roughmdr.model_error.coupling import (
     coupling_error,
     summits_error,
 )
+from roughmdr.model_error.parts import Assumptions
+from roughmdr.model_error.refusal import Givens
 from roughmdr.numerics.arguments import Floats
 
 if TYPE_CHECKING:

@@ -12,8 +12,9 @@ from roughmdr.aggregate import totals
 from roughmdr.asperity.validity import ValidityLimits
 from roughmdr.errors import OutOfRange
 from roughmdr.loading.pull_off import PullOff
-from roughmdr.model_error import Assumptions, Givens, ModelError, check_contact_fraction
 from roughmdr.model_error.conductance import conductance_error
+from roughmdr.model_error.parts import Assumptions, ModelError
+from roughmdr.model_error.refusal import Givens, check_contact_fraction
 from roughmdr.numerics.arguments import Floats
 
 PER_AREA = {"pressure", "contact_fraction", "model_error_curve"}

@@ -15,8 +15,8 @@ from roughmdr.ensemble.ensemble import Ensemble
 from roughmdr.errors import OutOfRange, RoughmdrError, SceneError, warn_limits
 from roughmdr.interaction.settings import Interaction
 from roughmdr.kernels.adhesion import Adhesion
-from roughmdr.model_error import fraction_warnings
 from roughmdr.model_error.coupling import coupling_warnings
+from roughmdr.model_error.refusal import fraction_warnings
 from roughmdr.schema.keywords import named_keywords
 from roughmdr.schema.material import effective_modulus_of
 from roughmdr.storage.labelled import Array, Labelled
@@ -152,7 +152,7 @@ def load_separation(
                 share = PULL_OFF_PER_AREA[OVER_AREA[variable.name]]
                 data[share.name] = Array((), np.array(number / asperities.nominal_area), share.attrs)
     warnings = [*result.warnings, *result.extremes.warnings]
-    fraction, overlap = result.model_error.largest_fraction, result.model_error.overlap
+    fraction, overlap = (result.model_error.named[name] for name in ("largest_contact_fraction", "overlap_fraction"))
     if coupling is not None and coupling.model == "pairwise":
         warnings += coupling_warnings(fraction, overlap, result.marked_steps, on_grid=result.grid_points > 0.0)
     else:

@@ -10,8 +10,7 @@ from roughmdr.aggregate.mean_field import mean_inverse_distance
 from roughmdr.ensemble.ensemble import Ensemble
 from roughmdr.interaction.placed import sides_of
 from roughmdr.loading.path import LoadingPath
-from roughmdr.model_error.distances import FEW, error_by_distances, error_of_few
-from roughmdr.model_error.interaction import interaction_error
+from roughmdr.model_error.interaction import FEW, error_by_distances, error_of_few, interaction_error
 from roughmdr.numerics.arguments import Floats
 
 _HALVINGS = 12

@@ -34,10 +34,9 @@ from roughmdr.expected.pull_off import pull_off_of
 from roughmdr.interaction.settings import Interaction
 from roughmdr.kernels.adhesion import Adhesion
 from roughmdr.loading.staircase import no_memory
-from roughmdr.model_error import Assumptions, Givens, crowd_warnings
-from roughmdr.model_error.distances import FEW, error_of_few
-from roughmdr.model_error.interaction import poisson_overlap
-from roughmdr.model_error.parts import Yielding
+from roughmdr.model_error.interaction import FEW, error_of_few, poisson_overlap
+from roughmdr.model_error.parts import Assumptions, Yielding
+from roughmdr.model_error.refusal import Givens, crowd_warnings
 from roughmdr.numerics.arguments import Floats
 
 _MAX_ERROR = 0.1  # error, over the largest force, above which the law is refused

@@ -4,16 +4,3 @@
 together, ``at_force.py`` and ``at_given.py`` the errors of other quantities, and ``refusal.py`` the contact fraction
 beyond which there is no answer, with the likely cause.
 """
-
-from roughmdr.model_error.parts import PARTS, Assumptions, ModelError
-from roughmdr.model_error.refusal import Givens, check_contact_fraction, crowd_warnings, fraction_warnings
-
-__all__ = [
-    "PARTS",
-    "Assumptions",
-    "Givens",
-    "ModelError",
-    "check_contact_fraction",
-    "crowd_warnings",
-    "fraction_warnings",
-]

@@ -54,11 +54,6 @@ class ByInteraction(NamedTuple):
     softness: Floats | float
     """Share that yielding has left of it, but for flanks of summits."""
 
-    @classmethod
-    def of_elastic(cls, own: Floats) -> "ByInteraction":
-        """Return the errors of elastic contacts."""
-        return cls(own, own, 1.0)
-
 
 class Method(NamedTuple):
     """Errors of one way to compute a law, against boundary elements (``pipelines/study.py at_pressure``)."""

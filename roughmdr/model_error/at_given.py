@@ -106,7 +106,7 @@ def _relative_errors(
     sticky_hills = (origin == ORIGINS.index("hills")) & np.isfinite(numbers["avalanche_count"])
     over_largest = np.where(sticky_hills, whole, of_jkr)  # which hills attraction with a range makes sooner
     pulled = numbers["by_range"], numbers["left"]
-    shared = shared if yields.any() else ByInteraction.of_elastic(own)
+    shared = shared if yields.any() else ByInteraction(own, elastic=own, softness=1.0)
     at_force = relative_at_force(shared, fraction, _at_force(numbers), *pulled, origin, grid)
     return whole - over_largest, over_largest + by_model * ~loads * np.isnan(stated), at_force
 
@@ -117,20 +117,17 @@ def largest_at_force(numbers: Mapping[str, Any]) -> dict[str, float]:
     ``numbers`` are those of one run or arrays over runs, by name; nothing is told without all that errors follow from,
     nor of contacts that yield and adhere.
     """
-    yields = PLASTIC in numbers
-    if not numbers.keys() >= {*ALWAYS} or (yields and not knows_yielding(numbers)):
+    yields, adheres = PLASTIC in numbers, not np.isfinite(numbers.get(PLASTIC_AT_FORCE[0], np.nan)).any()
+    if not numbers.keys() >= {*ALWAYS} or (yields and adheres):
         return {}
     of = {name: np.asarray(numbers.get(name, np.nan), dtype=np.float64)[..., None] for name in NUMBERS}
     own, fraction, origin, grid = (of[name] for name in ("interaction_error", "largest_contact_fraction", *_METHOD))
     by_jkr, none = by_range(of[_BY_JKR], of["tabor_number"], np.ones(1)), np.ones(1)
-    shared = softened(own, of[SOFTNESS], fraction, fraction, origin, grid) if yields else ByInteraction.of_elastic(own)
+    shared = ByInteraction(own, elastic=own, softness=1.0)
+    if yields:
+        shared = softened(own, of[SOFTNESS], fraction, fraction, origin, grid)
     found = relative_at_force(shared, fraction, _at_force(of), by_jkr, none, origin, grid)
     return {name: float(np.fmax.reduce(each, axis=None)) for name, each in zip(NAMES, found, strict=True)}
-
-
-def knows_yielding(numbers: Mapping[str, Any]) -> bool:
-    """Return whether a run or any of several tells ``PLASTIC_AT_FORCE``."""
-    return bool(np.isfinite(numbers.get(PLASTIC_AT_FORCE[0], np.nan)).any())
 
 
 def _at_force(numbers: Mapping[str, Floats]) -> list[Floats]:

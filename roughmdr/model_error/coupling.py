@@ -80,11 +80,10 @@ def summits_error(contact_fraction: Floats, origin: Origin) -> Floats:
 
 def coupling_warnings(contact_fraction: float, overlap: float, marked: float, *, on_grid: bool = False) -> list[str]:
     """Return the warnings of the largest contact fraction and overlap of a path; ``on_grid``: by boundary elements."""
-    lines = []
     if on_grid:
-        if marked > 0:
-            lines.append(f"up to {marked:.0f} steps of a realisation have no value: boundary elements did not converge")
-        return lines
+        failed = f"up to {marked:.0f} steps of a realisation have no value: boundary elements did not converge"
+        return [failed] if marked > 0 else []
+    lines = []
     if contact_fraction > WARNED_FRACTION or overlap > WARNED_SHARE:
         carried = f", and those that overlap carry {overlap:.2g} of the force" if overlap > 0.0 else ""
         lines.append(

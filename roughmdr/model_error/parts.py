@@ -96,35 +96,15 @@ class ModelError(NamedTuple):
 
     curve: Floats
     """The error at each step; NaN where the nominal area is not known."""
-    parts: dict[str, float]
-    """The largest of each of ``PARTS`` over the steps; ``PLASTIC`` where contacts yield."""
-    largest_fraction: float
-    """The largest contact fraction; NaN where the nominal area is not known."""
-    trusted_separation: float
-    """The least separation down to which the contact fraction is at most ``TRUSTED_FRACTION``; NaN where it always is,
-    or is not known.
+    named: dict[str, float]
+    """The largest error over the steps, with those over the largest force as they are, and all that describes it, by
+    their names in results: NaN where it follows from a nominal area that is not known.
     """
-    overlap: float
-    """Share of the contacts that reach into a neighbour's; NaN where it is not known."""
-    origin: Origin = "asperities"
-    """Where the asperities come from."""
-    largest: float = math.nan
-    """The largest error, with those over the largest force as they are; NaN where the nominal area is not known."""
-    plastic: dict[str, float] | None = None
-    """``PLASTIC_AT_FORCE`` and ``SOFTNESS`` where contacts yield."""
 
     @property
-    def named(self) -> dict[str, float]:
-        """The largest error over the steps and all that describes it, by their names in results."""
-        return {
-            "model_error": self.largest,
-            **self.parts,
-            **(self.plastic or {}),
-            "overlap_fraction": self.overlap,
-            "largest_contact_fraction": self.largest_fraction,
-            "trusted_separation": self.trusted_separation,
-            "asperity_origin": ORIGINS.index(self.origin),
-        }
+    def parts(self) -> dict[str, float]:
+        """The largest of each of ``PARTS`` over the steps; ``PLASTIC`` where contacts yield."""
+        return {name: self.named[name] for name in ALL_PARTS if name in self.named}
 
     @classmethod
     def of(
@@ -153,10 +133,15 @@ class ModelError(NamedTuple):
             loads = (separation <= np.minimum.accumulate(separation)) & (force.min() >= 0.0)
             stated = np.where(loads, plastic, np.minimum(by_model, 1.0))
             constant[PLASTIC] = float(stated.max(initial=0.0))
+        named = {
+            **dict.fromkeys(("model_error", "interaction_error"), math.nan),
+            **constant,
+            **({} if yielding is None or contact_fraction is None else yielding.named(separation)),
+            **dict.fromkeys(("overlap_fraction", "largest_contact_fraction", "trusted_separation"), math.nan),
+            "asperity_origin": ORIGINS.index(assumptions.origin),
+        }
         if contact_fraction is None:
-            curve = np.where(force != 0.0, math.nan, 0.0)
-            nothing = {"interaction_error": math.nan, **constant}
-            return cls(curve, nothing, math.nan, math.nan, math.nan, assumptions.origin)
+            return cls(np.where(force != 0.0, math.nan, 0.0), named)
         coupled, known = assumptions.coupling_error, assumptions.neighbours_error
         coefficients = OF_ORIGIN[assumptions.origin]
         if coupled is None:
@@ -166,22 +151,19 @@ class ModelError(NamedTuple):
         if yielding is not None:
             flanks = summits_error(contact_fraction, assumptions.origin)
             interaction = np.minimum(interaction, flanks + (interaction - flanks) * yielding.softness)
-        curve = np.minimum(interaction + np.where(force != 0.0, others + plastic, 0.0), 1.0)
-        errors = curve
-        if yielding is not None:
-            errors = np.minimum(interaction + np.where(force != 0.0, others + stated, 0.0), 1.0)
+        curve, errors = (
+            np.minimum(interaction + np.where(force != 0.0, others + each, 0.0), 1.0) for each in (plastic, stated)
+        )
         if coupled is None:
             trusted = interaction <= interaction_error(np.array(_SLACK * TRUSTED_FRACTION), coefficients)
         else:  # the error of hills is the same at every contact fraction
             trusted = np.isfinite(force) if assumptions.origin == "hills" else interaction <= TRUSTED_ERROR
         beyond = separation[~trusted]
-        return cls(
-            curve,
-            {"interaction_error": float(np.nanmax(interaction, initial=0.0)), **constant},
-            float(np.nanmax(contact_fraction, initial=0.0)),
-            float(beyond.max()) if beyond.size else math.nan,
-            assumptions.overlap,
-            assumptions.origin,
-            float(np.nanmax(errors, initial=0.0)),
-            None if yielding is None else yielding.named(separation),
-        )
+        named |= {
+            "model_error": float(np.nanmax(errors, initial=0.0)),
+            "interaction_error": float(np.nanmax(interaction, initial=0.0)),
+            "overlap_fraction": assumptions.overlap,
+            "largest_contact_fraction": float(np.nanmax(contact_fraction, initial=0.0)),
+            "trusted_separation": float(beyond.max()) if beyond.size else math.nan,
+        }
+        return cls(curve, named)

@@ -70,17 +70,13 @@ def likely_cause(separation: float, givens: Givens) -> str:
 
 def fraction_warnings(largest: float) -> list[str]:
     """Return the warning of the largest contact fraction of a path; none where it is small or not known (NaN)."""
+    if not largest > LARGE_FRACTION:
+        return []
+    why = "asperities are taken to be independent, which they are not there"
     if largest > OVERLAPPED_FRACTION:
-        return [
-            f"a summed contact area of up to {largest:.2g} of the nominal area: contacts overlap, so that the sum is "
-            f"no contact area any more, and the force is far off (warned of above {LARGE_FRACTION:g})"
-        ]
-    if largest > LARGE_FRACTION:
-        return [
-            f"a summed contact area of up to {largest:.2g} of the nominal area: asperities are taken to be "
-            f"independent, which they are not there (warned of above {LARGE_FRACTION:g})"
-        ]
-    return []
+        why = "contacts overlap, so that the sum is no contact area any more, and the force is far off"
+    area = f"a summed contact area of up to {largest:.2g} of the nominal area"
+    return [f"{area}: {why} (warned of above {LARGE_FRACTION:g})"]
 
 
 def crowd_warnings(error: Floats | None, contact_fraction: Floats) -> list[str]:

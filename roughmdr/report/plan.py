@@ -148,14 +148,14 @@ def _foreseen(plan: Plan, cell: Foreseen) -> ForeseenTable:
         "tabor_number": cell.law.tabor,
         "adhesion": cell.law.model,
         "model_error": error.named["model_error"],
-        "parts": dict(error.parts),
+        "parts": error.parts,
         "at_given_pressure": largest_at_force(
             {**error.named, "grid_points": cell.law.grid_points, "tabor_number": cell.law.tabor}
         ),
-        "largest_contact_fraction": error.largest_fraction,
+        "largest_contact_fraction": error.named["largest_contact_fraction"],
         "effective_contacts": cell.law.effective_contacts,
         "sampling_error": cell.law.sampling_error,
         "area_sampling_error": cell.law.area_sampling_error,
         "contact_fraction_at_pull_off": cell.fraction_at_pull_off,
-        "trusted_separation": error.trusted_separation,
+        "trusted_separation": error.named["trusted_separation"],
     }

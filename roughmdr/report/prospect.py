@@ -68,7 +68,7 @@ def prospect_lines(prospect: "Prospect") -> Iterator[tuple[str, str]]:
         on_grid = prospect.interaction.beyond == "boundary_elements"
         becomes = "realisations are computed by boundary elements" if on_grid else "steps are marked"
         yield "", f"too much overlap or contact for pairs in {marked} of {len(cells)} cells: {becomes}"
-    touches = any(cell.law.model_error.largest_fraction > 0.0 for cell in cells)
+    touches = any(cell.law.model_error.named["largest_contact_fraction"] > 0.0 for cell in cells)
     if model is None and touches and advise:
         parts = any(not math.isnan(cell.fraction_at_pull_off) for cell in cells)
         how = 'with [interaction] model = "pairwise" it would be found ' if parts else ""

@@ -13,9 +13,9 @@ from roughmdr.batch.derivatives import Derivatives
 from roughmdr.batch.plan import Plan
 from roughmdr.batch.resume.keys import versions
 from roughmdr.batch.rounds import CellMethod
-from roughmdr.model_error import fraction_warnings
 from roughmdr.model_error.at_given import FORCES
 from roughmdr.model_error.coupling import coupling_warnings
+from roughmdr.model_error.refusal import fraction_warnings
 from roughmdr.numerics.arguments import Floats
 from roughmdr.result.accuracy import reached
 from roughmdr.result.model_errors import errors_along

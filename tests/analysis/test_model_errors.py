@@ -289,7 +289,7 @@ def test_errors_by_range_grow_with_it_and_the_stiffness_is_lost_at_the_largest_t
     def errors(by_jkr: float, left: float) -> list[float]:
         own, none = np.array([interaction]), np.zeros(1)
         known = (np.array([value]) for value in (by_jkr, left, 0.0, 0.0))
-        found = relative_at_force(ByInteraction.of_elastic(own), np.array([fraction]), [none] * len(NAMES), *known)
+        found = relative_at_force(ByInteraction(own, own, 1.0), np.array([fraction]), [none] * len(NAMES), *known)
         return [float(each[0]) for each in found]
 
     found, without, far = errors(by_jkr, left), errors(0.0, left), errors(by_jkr, 1.0)

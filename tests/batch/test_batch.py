@@ -12,7 +12,7 @@ import roughmdr as rm
 from roughmdr.batch.plan import make_plan
 from roughmdr.batch.rounds import Rounds
 from roughmdr.batch.tasks import split_into_tasks
-from roughmdr.model_error import PARTS
+from roughmdr.model_error.parts import PARTS
 from roughmdr.runner.backend import Backend
 from roughmdr.runner.run import execute
 from roughmdr.scene import read

@@ -43,10 +43,11 @@ def draw(rng: np.random.Generator, kind: str, adhesive: bool) -> Case:
 
 def control_values(rng: np.random.Generator, exact: JkrPowerLaw, control: str, width: float) -> list[Number]:
     """At 1 - value/value at the fold (without adhesion: value/value at a = width) log-uniform in 1e-12 to 1e3."""
-    law = exact.force if control == "force" else exact.indentation
-    fold = exact.fold("force" if control == "force" else "indentation")
+    branch = "force" if control == "force" else "indentation"
+    fold = exact.fold(branch)
     distances = [mp.mpf(10) ** x for x in rng.uniform(-12.0, 3.0, VALUES)]
-    values = [law(fold) * (1 - X) if exact.work else law(mp.mpf(width)) * X for X in distances]
+    unit = exact.state(fold if exact.work else mp.mpf(width))[branch]
+    values = [unit * (1 - X if exact.work else X) for X in distances]
     if control != "contact_radius":
         return values
     stable = [exact.radius("indentation", value) for value in values]

@@ -25,7 +25,7 @@ def energy(contact: Contact, state: float) -> float:
 
 def springs(exact: JkrPowerLaw, a: Number) -> tuple[Number, Number]:
     """E* ∫_0^a (delta - g)^2 dx, by the expanded square, and pi w a^2."""
-    delta, g = exact.indentation(a), exact.g(a)
+    delta, g = exact.state(a)["indentation"], exact.g(a)
     square = delta**2 - 2 * delta * g / (exact.n + 1) + g**2 / (2 * exact.n + 1)
     return exact.effective_modulus * a * square, mp.pi * exact.work * a**2
 

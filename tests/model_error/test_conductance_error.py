@@ -36,7 +36,7 @@ def error(
 def of_independent(fraction: float | None, origin: Origin = "asperities", **parts: float) -> float:
     assumptions = Assumptions(ValidityLimits(0.0, 0.0), origin=origin)
     named = dict.fromkeys(PARTS, 0.0) | parts
-    model = ModelError(np.zeros(1), named, 0.0, math.nan, 0.0)
+    model = ModelError(np.zeros(1), named)
     return conductance_error(assumptions, model, None if fraction is None else np.array([fraction, 0.0, math.nan]))
 
 

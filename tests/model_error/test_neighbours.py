@@ -14,8 +14,7 @@ import roughmdr as rm
 from roughmdr.elements.path import solve_on_grid
 from roughmdr.elements.surface import surface_of_asperities
 from roughmdr.ensemble.ensemble import Ensemble
-from roughmdr.model_error.distances import error_by_distances
-from roughmdr.model_error.interaction import interaction_error
+from roughmdr.model_error.interaction import error_by_distances, interaction_error
 
 FREE = {"model": "pairwise", "boundary": "free"}
 

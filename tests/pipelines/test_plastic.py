@@ -130,8 +130,8 @@ def test_without_yield_contacts_are_those_of_jkr() -> None:
     a = twin.radius("indentation", mp.mpf(2e-9))
     force, radius, _ = hard.state(2e-9, 0.0)
     assert abs(radius / a - 1) < 1e-30
-    assert abs(force / twin.force(a) - 1) < 1e-30
-    tip = twin.indentation(twin.fold("indentation"))
+    assert abs(force / twin.state(a)["force"] - 1) < 1e-30
+    tip = twin.state(twin.fold("indentation"))["indentation"]
     assert hard.state(2e-9, 2e-9 - tip * 1.0001)[0] == 0
     assert hard.state(2e-9, 2e-9 - tip * 0.9999)[0] < 0
 

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from oracles.exact_contact import ExactContact
+from oracles.jkr import ExactContact
 from oracles.multiprecision import mp
 from studies.asperity_error import DRAW
 

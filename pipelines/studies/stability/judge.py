@@ -29,15 +29,15 @@ class Reference:
 
     def depth(self) -> Number:
         """Return how far it is pulled before it detaches [m], 0 without adhesion."""
-        return -self.jkr.indentation(self.jkr.fold("indentation"))
+        return -self.jkr.state(self.jkr.fold("indentation"))["indentation"]
 
     def value(self, control: str, distance: float) -> Number:
         """Return the control at a distance to the fold; where the state does not touch, the radius at pull-off."""
         jkr, branch = self.jkr, "force" if control == "force" else "indentation"
         if jkr.work:
-            value = jkr.under(branch, jkr.fold(branch)) * (1 - mp.mpf(distance))
+            value = jkr.state(jkr.fold(branch))[branch] * (1 - mp.mpf(distance))
         else:
-            value = jkr.under(branch, mp.mpf(self.width)) * distance
+            value = jkr.state(mp.mpf(self.width))[branch] * distance
         return jkr.radius(branch, value) if control == "contact_radius" else value
 
     def numbers(self, control: str, value: Number) -> list[Number]:
@@ -52,7 +52,7 @@ class Reference:
     def contact(self, indentation: Number) -> tuple[Number, Number]:
         """Return contact radius [m] and force [N] in a slow retraction."""
         a = self.jkr.radius("indentation", indentation)
-        return a, self.jkr.force(a)
+        return a, self.jkr.state(a)["force"]
 
 
 class DugdaleReference(Reference):

@@ -46,12 +46,14 @@ def compute(layer: Layer, shape: Shape, path: LoadingPath, *, error: float, vari
     numerical = solution.error + local.numerical_error + _rule_error(solution, law)
     if not numerical <= _MAX_ERROR:
         raise OutOfRange(f"the force of the {shape.name} is right only to {numerical:.1g} of its largest")
-    late = separation[pressed <= local.model_error.trusted_separation]
+    error_of_layer = local.model_error
+    late = separation[pressed <= error_of_layer.named["trusted_separation"]]
+    trusted = {"trusted_separation": float(late.max()) if late.size else math.nan}
     own |= local.variables
     return local._replace(
         variables={name: own[name] for name in names},
         numerical_error=numerical,
-        model_error=local.model_error._replace(trusted_separation=float(late.max()) if late.size else math.nan),
+        model_error=error_of_layer._replace(named=error_of_layer.named | trusted),
         pull_off=pull_off_of(body, places, separation, error),
         extremes=_extremes(local.extremes, shape, own["nominal_contact_radius"]),
         warnings=(*local.warnings, *_remarks(solution.error, error), *_few(own["contact_count"])),
