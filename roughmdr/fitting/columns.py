@@ -37,7 +37,6 @@ class Columns(NamedTuple):
     """Units as the file spells them; empty for SI."""
     rows: list[tuple[str, list[object]]]
     """Position of each row, in words for messages, and its entries."""
-    file: Path | None = None
     stiffness: float | None = None
     """Spring constant that the file tells [N/m]."""
     about: str = ""
@@ -69,7 +68,7 @@ def _of_text(path: Path) -> Columns:
             curve = read_instrument(path)
     if curve is not None:
         control, rows, stiffness, about = curve
-        return Columns(str(path), [control, "force"], ["", ""], rows, path, stiffness, about)
+        return Columns(str(path), [control, "force"], ["", ""], rows, stiffness, about)
     if not lines:
         raise RoughmdrError("is empty; expected a line with the names of the columns, and rows")
     _, header = lines[0]
@@ -89,7 +88,7 @@ def _of_text(path: Path) -> Columns:
             hint = "; write decimal points" if separator == "," and len(row) == 2 * len(titles) else ""
             raise RoughmdrError(f"{place}: has {len(row)} entries; the first line names {len(titles)} columns{hint}")
         rows.append((place, [_with_point(entry.strip()) for entry in row]))
-    return _titled(str(path), titles, rows)._replace(file=path)
+    return _titled(str(path), titles, rows)
 
 
 def _decoded(content: bytes) -> str:
@@ -139,7 +138,7 @@ def _of_dataset(dataset: Any) -> Columns:
     rows = [(f"row {number}", list(row)) for number, row in enumerate(values)]
     units = [str(each.attrs.get("units", "")) for each in found.values()]
     stiffness = dataset.get("spring_constant") if dataset.attrs.get("kind") == FIT else None
-    return Columns("measured", list(found), units, rows, stiffness=None if stiffness is None else float(stiffness))
+    return Columns("measured", list(found), units, rows, None if stiffness is None else float(stiffness))
 
 
 def _titled(origin: str, titles: list[str], rows: list[tuple[str, list[object]]]) -> Columns:

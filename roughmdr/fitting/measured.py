@@ -35,7 +35,6 @@ class MeasuredCurve(NamedTuple):
     """Standard deviation of each load [N or Pa]; None where it is not known."""
     origin: str
     """The file or argument it is from."""
-    file: Path | None
     stiffness: float | None = None
     """Spring constant of the cantilever that the file tells [N/m]."""
     about: str = ""
@@ -94,8 +93,8 @@ def read_measured(measured: "str | Path | pd.DataFrame | xr.Dataset | Columns", 
             raise StoreError(f"{columns.origin}: {name} is {same} in every row; a curve {wanted} is needed")
     error = numbers.get(f"{load}_error")
     control, values = ("remote", -numbers[given]) if given == "piezo" else (given, numbers[given])
-    stiffness, about = columns.stiffness, columns.about
-    return MeasuredCurve(control, values, load, numbers[load], error, columns.origin, columns.file, stiffness, about)
+    origin, stiffness, about = columns.origin, columns.stiffness, columns.about
+    return MeasuredCurve(control, values, load, numbers[load], error, origin, stiffness, about)
 
 
 def _one_of(columns: Columns, names: tuple[str, ...]) -> str:
