@@ -11,7 +11,8 @@ from typing import Any
 import numpy as np
 
 from roughmdr.errors import OutOfRange, RoughmdrError, StoreError
-from roughmdr.fitting.columns import Columns, read_columns
+from roughmdr.fitting.columns import read_columns
+from roughmdr.fitting.formats import Columns, Rows
 from roughmdr.fitting.joint import agree
 from roughmdr.fitting.measured import MeasuredCurve, read_measured
 from roughmdr.fitting.model import Model
@@ -61,7 +62,7 @@ def taken_apart(measured: Any) -> Curves | Columns:
 
 def _split(columns: Columns) -> list[tuple[str, Columns]]:
     """Return the rows of each curve that the column ``curve`` names."""
-    at, rows = columns.names.index("curve"), dict[str, list[tuple[str, list[object]]]]()
+    at, rows = columns.names.index("curve"), dict[str, Rows]()
     kept = [i for i in range(len(columns.names)) if i != at]
     rest = columns._replace(names=[columns.names[i] for i in kept], units=[columns.units[i] for i in kept])
     for place, row in columns.rows:

@@ -6,7 +6,8 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from roughmdr.errors import RoughmdrError, StoreError
-from roughmdr.fitting.columns import Columns, read_columns
+from roughmdr.fitting.columns import read_columns
+from roughmdr.fitting.formats import Columns
 from roughmdr.numerics.arguments import Floats
 from roughmdr.schema.units import format_quantity, quantity, unit_factor
 from roughmdr.schema.wording import printable, short_repr, suggestion
