@@ -15,7 +15,7 @@ from roughmdr.fitting.measured import MeasuredCurve
 from roughmdr.fitting.model import Model
 from roughmdr.fitting.parameters import Known, free_parameters
 from roughmdr.fitting.residuals import relative_rms
-from roughmdr.fitting.search import Fitted, Found, fitted
+from roughmdr.fitting.search import Fitted, fitted
 from roughmdr.fitting.uncertainty import noise_correlation
 from roughmdr.numerics.arguments import Floats
 from roughmdr.scene import Scene, read
@@ -138,18 +138,9 @@ def _with(scene: Scene, adhesion: dict[str, Any]) -> Scene:
 
 def _fitted(name: str, made: Callable[[], Model]) -> Candidate:
     try:
-        model = made()
-        return Candidate(name, fitted(model) if model.parameters else Fitted(model, _as_it_is(model)))
+        return Candidate(name, fitted(made()))
     except RoughmdrError as error:
         return Candidate(name, None, str(error))
-
-
-def _as_it_is(model: Model) -> Found:
-    """Return the deviations of a model without parameters; RoughmdrError where it has no law."""
-    x, deviations, *_ = model.point_at(np.empty(0))
-    if not np.isfinite(deviations).all():
-        raise model.last_error
-    return Found(x, deviations, np.empty((deviations.size, 0)), True, model.curve.load.size)
 
 
 def _dugdale(scene: Scene, near: Scene, free: list[str], model_of: Callable[[Scene, list[str]], Model]) -> Model:

@@ -9,7 +9,7 @@ from roughmdr.errors import RoughmdrError
 from roughmdr.fitting.model import Model
 from roughmdr.fitting.parameters import Parameter
 from roughmdr.fitting.residuals import is_above_noise, is_systematic, noise_of, relative_rms
-from roughmdr.fitting.search import Found, search
+from roughmdr.fitting.search import Found, fitted
 from roughmdr.fitting.uncertainty import Uncertainty, apart_from_the_rest, correlation_of
 from roughmdr.numerics.arguments import Floats
 from roughmdr.schema.units import format_quantity
@@ -77,7 +77,7 @@ def _backwards(model: Model, found: Found, known: Uncertainty) -> Iterator[str]:
     other = model.along(model.curve.backwards())
     other.told, other.spread, other.noise = model.told, model.spread, model.noise
     try:
-        deviations = search(other).residuals
+        deviations = fitted(other).found.residuals
     except RoughmdrError:
         return
     here, there = (float(np.mean(np.square(each))) for each in (found.residuals, deviations))

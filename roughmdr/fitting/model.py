@@ -41,7 +41,7 @@ class Point(NamedTuple):
 
 LEAST_NOISE = 1e-12  # least noise over the largest load: of a curve without any, that of rounding
 _NOWHERE = Changes(np.empty(0, dtype=np.int64), np.empty(0))
-_NONE = Point(np.empty(0), np.empty(0), Force(np.empty(0), 0.0, _NOWHERE, None))
+_NONE = Point(np.full(1, np.nan), np.empty(0), Force(np.empty(0), 0.0, _NOWHERE, None))
 
 
 class Model:
