@@ -37,8 +37,6 @@ class Posterior(NamedTuple):
     """Number of independent draws that would tell as much."""
     long_enough: bool
     """Whether the chains are long enough to tell this."""
-    with_law: bool
-    """Whether the error of the law is in the likelihood."""
 
 
 def posterior_of(model: Model, found: Found, known: Uncertainty) -> Posterior:
@@ -67,7 +65,7 @@ def posterior_of(model: Model, found: Found, known: Uncertainty) -> Posterior:
     burnt, thin = min(int(_BURNT * time), chains.iteration // 2), max(int(0.5 * time), 1)
     draws = np.swapaxes(chains.get_chain(discard=burnt, thin=thin), 0, 1)[:, :, : found.x.size]
     independent = count * (chains.iteration - burnt) / time
-    return Posterior(draws, independent, chains.iteration > _LONG * time, known.error_of_law is not None)
+    return Posterior(draws, independent, chains.iteration > _LONG * time)
 
 
 def _starts(model: Model, found: Found, known: Uncertainty, rng: np.random.Generator, count: int) -> Floats:

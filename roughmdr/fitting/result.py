@@ -94,7 +94,7 @@ def assemble(
         "trust": dict(trust_lines(law.model_error.named, interaction=interaction))["trust"],
     }
     if posterior is not None:
-        law_error = "with" if posterior.with_law else "without"
+        law_error = "without" if known.error_of_law is None else "with"
         attrs["posterior"] = f"about {posterior.independent:.0f} independent draws, {law_error} the error of the law"
         attrs["references"] += f"; {_CHAINS}"
     if warnings:
