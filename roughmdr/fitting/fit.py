@@ -15,7 +15,7 @@ from roughmdr.fitting.parameters import MACHINE, Known
 from roughmdr.fitting.posterior import check_package
 from roughmdr.fitting.search import fitted
 from roughmdr.fitting.stored import read_fit
-from roughmdr.fitting.words import curve_names, parameter_keys
+from roughmdr.fitting.words import curve_names, parameter_names
 from roughmdr.runner.backend import Backend
 from roughmdr.scene import Scene, read
 from roughmdr.scene.keys import entry_at, set_key
@@ -217,7 +217,7 @@ def _check_nothing_lost(out: Path, kept: list[str]) -> None:
     if not out.exists():
         return
     old = read_fit(out)
-    lost = [name for name in [*parameter_keys(old), *curve_names(old)] if name not in kept]
+    lost = [name for name in [*parameter_names(old), *curve_names(old)] if name not in kept]
     if lost:
         named = ", ".join(lost[:_NAMED]) + f" and {len(lost) - _NAMED} more" * (len(lost) > _NAMED)
         raise StoreError(f"{out}: holds a fit of {named} too: give another output, or --fresh to replace it")

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from roughmdr.errors import RoughmdrError, StoreError, level_outside
-from roughmdr.fitting.words import COMPARED, curve_names, is_open
+from roughmdr.fitting.words import COMPARED, curve_names, is_open, load_of
 from roughmdr.storage.labelled import Array, Labelled
 from roughmdr.storage.reading import read_arrays
 from roughmdr.storage.result_file import FIT, is_fit
@@ -141,7 +141,7 @@ def _parameters(data: Labelled) -> Iterator[tuple[str, tuple[str, ...]]]:
 def _forms(data: Labelled) -> dict[str, Form]:
     """Return the forms of the arrays that a fit must have, by their names."""
     control = next((name for name in _CONTROLS if name in data.coordinates), "separation")
-    load, point = _load(data), ("point",)
+    load, point = load_of(data), ("point",)
     forms = {control: Form(point, "f", MEASURED[control]), "branch": Form(point, "text", "")}
     forms |= {name: Form(point, "f", MEASURED[load]) for name in (load, f"{load}_fitted", "residual")}
     forms |= {"parameter_name": Form(("parameter",), "text", ""), "parameter_scale": Form(("parameter",), "f", "")}
@@ -157,8 +157,4 @@ def _optional_forms(data: Labelled) -> dict[str, Form]:
     compared |= {name: Form(("model",), "text", "") for name in ("model_name", "model_failure")}
     compared |= {"spring_constant": Form((), "f", "N m-1")}
     errors |= {f"{names[0]}_posterior": Form(("chain", "draw"), "f", "") for _, names in _parameters(data)}
-    return errors | compared | {f"{_load(data)}_error": Form(("point",), "f", MEASURED[_load(data)])}
-
-
-def _load(data: Labelled) -> str:
-    return "pressure" if "pressure_fitted" in data.variables else "force"
+    return errors | compared | {f"{load_of(data)}_error": Form(("point",), "f", MEASURED[load_of(data)])}

@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from roughmdr.fitting.words import describe_parameters, describe_shifts, parameter_keys, typical
+from roughmdr.fitting.words import describe_parameters, describe_shifts, load_of, parameter_names, typical
 from roughmdr.pictures.style import BRANCH_COLOURS, Scale, set_title
 from roughmdr.storage.labelled import Labelled
 
@@ -20,8 +20,8 @@ def draw_fits(fits: Labelled) -> "Figure":
     """Draw how each parameter, and the size of the residuals, are distributed over many curves."""
     from roughmdr.pictures.figure import Figure
 
-    keys = {key: key.replace(".", "_") for key in parameter_keys(fits)} | {"residual over largest load": "residual_rms"}
-    drawn = {key: array for key, name in keys.items() if (array := fits.variables[name]).dims}
+    names = parameter_names(fits) | {"residual over largest load": "residual_rms"}
+    drawn = {key: array for key, name in names.items() if (array := fits.variables[name]).dims}
     figure = Figure(figsize=(6.4, 2.1 * len(drawn)), layout="constrained")
     for ax, (key, array) in zip(figure.subplots(len(drawn), 1, squeeze=False).flat, drawn.items(), strict=True):
         values = array.values[np.isfinite(array.values)]
@@ -38,8 +38,7 @@ def draw_fit(fit: Labelled) -> "Figure":
 
     from roughmdr.pictures.figure import Figure
 
-    control = next(name for name in _CONTROLS if name in fit.coordinates)
-    load = "pressure" if "pressure_fitted" in fit.variables else "force"
+    control, load = next(name for name in _CONTROLS if name in fit.coordinates), load_of(fit)
     figure = Figure(figsize=(6.4, 5.6), layout="constrained")
     law, residual = figure.subplots(2, 1, sharex=True, height_ratios=(3.0, 1.0))
     x = Scale.of(fit.coordinates[control].values, _CONTROLS[control], "m")
