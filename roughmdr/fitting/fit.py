@@ -168,13 +168,12 @@ def fit_labelled(
         if not fresh:
             check_same_kind(out, FIT)
             _check_nothing_lost(out, [*free, *curves, *(RANGES if auto else ())])
-    if auto:
-        result = assembled(command, best_model(validated, curve, free, known), posterior=options.posterior)
-    elif curves:
+    if curves:
         model, workers, quiet = Model(validated, curve, free, known), options.workers, options.quiet
         result = fit_each(curves, model, command, shared=shared, workers=workers, quiet=quiet)
     else:
-        result = assembled(command, fitted(Model(validated, curve, free, known)), posterior=options.posterior)
+        best = best_model(validated, curve, free, known) if auto else fitted(Model(validated, curve, free, known))
+        result = assembled(command, best, posterior=options.posterior)
     if out is not None:
         write_netcdf(result, out)
     return result
