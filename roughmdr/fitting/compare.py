@@ -14,7 +14,6 @@ from roughmdr.errors import RoughmdrError, SceneError
 from roughmdr.fitting.measured import MeasuredCurve
 from roughmdr.fitting.model import Model
 from roughmdr.fitting.parameters import Known, free_parameters
-from roughmdr.fitting.residuals import relative_rms
 from roughmdr.fitting.search import Fitted, fitted
 from roughmdr.fitting.uncertainty import noise_correlation
 from roughmdr.numerics.arguments import Floats
@@ -114,7 +113,7 @@ def best_model(scene: Scene, curve: MeasuredCurve, free: list[str], known: Known
 def _table(candidates: list[Candidate], aicc: Floats) -> dict[str, Array]:
     """Return the arrays over ``model``; those without units are texts."""
     weight = np.exp(-0.5 * (aicc - aicc.min()))
-    sizes = [relative_rms(c.fit.model.curve, c.fit.found.deviations) if c.fit else math.inf for c in candidates]
+    sizes = [c.fit.model.curve.relative_rms(c.fit.found.deviations) if c.fit else math.inf for c in candidates]
     numbers: dict[str, tuple[Any, str]] = {
         "aicc": (aicc, "corrected Akaike criterion, up to a constant; infinite where there is no fit"),
         "akaike_weight": (weight / weight.sum(), "Akaike weight"),

@@ -6,9 +6,9 @@ from collections.abc import Iterator
 import numpy as np
 
 from roughmdr.errors import RoughmdrError
+from roughmdr.fitting.correlation import is_systematic
 from roughmdr.fitting.model import Model
 from roughmdr.fitting.parameters import Parameter
-from roughmdr.fitting.residuals import is_above_noise, is_systematic, noise_of, relative_rms
 from roughmdr.fitting.search import Found, fitted
 from roughmdr.fitting.uncertainty import Uncertainty, apart_from_the_rest, correlation_of
 from roughmdr.numerics.arguments import Floats
@@ -40,7 +40,7 @@ def doubts(model: Model, found: Found, known: Uncertainty) -> Iterator[str]:
     if not found.converged:
         yield "the search ended before it converged"
     if is_systematic(found.residuals) and not known.noise.rho:
-        rms = 100.0 * relative_rms(model.curve, found.deviations)
+        rms = 100.0 * model.curve.relative_rms(found.deviations)
         yield (
             f"the residuals are systematic ({rms:.2g} % r.m.s.): the scene does not describe the curve, and the "
             "intervals mean little"
@@ -58,9 +58,9 @@ def _of_the_curve(model: Model, found: Found) -> Iterator[str]:
     curve, name, steps = model.curve, model.curve.quantity, np.diff(model.curve.values)
     sums = [float(np.sum(np.square(each))) for each in ((curve.load - curve.level) / curve.weight, found.residuals)]
     noise = 1.0 if curve.error is not None else sums[1] / curve.load.size
-    if sums[0] - sums[1] < _BETTER * noise and not is_above_noise(curve, found.deviations):
+    if sums[0] - sums[1] < _BETTER * noise and not curve.has_less_noise(found.deviations):
         yield f"the {name} is noise along the whole curve, which shows no contact"
-    band = max(_BAND * noise_of(curve), _FLAT * float(np.ptp(curve.load)))
+    band = max(_BAND * curve.noise, _FLAT * float(np.ptp(curve.load)))
     top, next_to_it = (np.sum(np.floor((curve.load.max() - curve.load) / band) == i) for i in (0, 1))
     if top > max(_ROWS, _LONGER * next_to_it) and np.ptp(curve.load) > _LONGER * band:
         most = format_quantity(float(curve.load.max()), curve.unit)
@@ -72,7 +72,7 @@ def _of_the_curve(model: Model, found: Found) -> Iterator[str]:
 
 def _backwards(model: Model, found: Found, known: Uncertainty) -> Iterator[str]:
     """Yield a doubt where an adhesive law, which depends on the sense of motion, fits the curve better from its end."""
-    if not (model.adheres and is_above_noise(model.curve, found.deviations)):
+    if not (model.adheres and model.curve.has_less_noise(found.deviations)):
         return
     other = model.along(model.curve.backwards())
     other.told, other.spread, other.noise = model.told, model.spread, model.noise
@@ -83,7 +83,7 @@ def _backwards(model: Model, found: Found, known: Uncertainty) -> Iterator[str]:
     here, there = (float(np.mean(np.square(each))) for each in (found.residuals, deviations))
     points = known.noise.effective(deviations.size)
     if (here - there) * points > _BETTER * (there if model.curve.error is None else 1.0):
-        sizes = [100.0 * relative_rms(model.curve, found.deviations), 100.0 * relative_rms(other.curve, deviations)]
+        sizes = [100.0 * model.curve.relative_rms(found.deviations), 100.0 * other.curve.relative_rms(deviations)]
         yield (
             f"read from its last row to its first the curve is fitted better, to {sizes[1]:.2g} % r.m.s. in place of "
             f"{sizes[0]:.2g} %: rows must be in the order of measurement, for adhesion tells loading from unloading"

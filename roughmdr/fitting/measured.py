@@ -18,6 +18,8 @@ if TYPE_CHECKING:
     import xarray as xr
 
 _TURNS, _LONG_STEP = 1.0 / 3.0, 0.1  # share of turns and mean step over the range of mixed rows: 2/3, 1/3 by chance
+_OF_DIFFERENCES = 0.6745 * 20.0**0.5  # median of third differences of noise, over its standard deviation
+_SCATTER = 4.2  # three relative standard errors of a deviation found by such differences, over 1/sqrt(points)
 _CONTROLS, _LOADS = ("separation", "remote", "piezo"), ("force", "pressure")
 
 
@@ -62,6 +64,21 @@ class MeasuredCurve(NamedTuple):
     def weight(self) -> Floats:
         """The divisor of deviations: the error of each load, or the largest load."""
         return np.full_like(self.load, np.abs(self.load).max()) if self.error is None else self.error
+
+    @property
+    def noise(self) -> float:
+        """The standard deviation of the noise of the load [N or Pa], by third differences."""
+        return float(np.median(np.abs(np.diff(self.load, 3)))) / _OF_DIFFERENCES
+
+    def relative_rms(self, deviations: Floats) -> float:
+        """Return the root mean square of the deviations, without those from priors, over the largest load."""
+        loads = deviations[: self.load.size] * self.weight
+        return float(np.sqrt(np.mean(np.square(loads))) / self.largest)
+
+    def has_less_noise(self, deviations: Floats) -> bool:
+        """Return whether deviations are larger than the scatter of neighbours, by third differences of the load."""
+        most = (1.0 + _SCATTER / np.sqrt(self.load.size)) * self.noise
+        return bool(self.relative_rms(deviations) * self.largest > most)
 
     def is_mixed(self) -> bool:
         """Return whether the control goes to and fro from row to row, by much more than a sensor's noise."""

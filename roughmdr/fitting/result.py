@@ -7,7 +7,6 @@ from roughmdr.fitting.doubts import doubts
 from roughmdr.fitting.model import Model
 from roughmdr.fitting.parameters import Parameter
 from roughmdr.fitting.posterior import Posterior
-from roughmdr.fitting.residuals import relative_rms
 from roughmdr.fitting.search import Fitted, Found
 from roughmdr.fitting.uncertainty import Uncertainty
 from roughmdr.loading.path import labelled_branches
@@ -48,7 +47,7 @@ def assemble(
     variables["covariance"].attrs["comment"] = _COVARIED
     keys, scales = ([getattr(each, name) for each in model.parameters] for name in ("key", "scale"))
     scaled = "scale of a fitted number in SI, 0 where its logarithm was fitted"
-    rms, about = relative_rms(curve, found.deviations), "root mean square of the residual over the largest load"
+    rms, about = curve.relative_rms(found.deviations), "root mean square of the residual over the largest load"
     variables |= {
         "parameter_scale": _array(scales, "", scaled, _PARAMETER),
         **_of_curve(model, law.variables[curve.quantity] + model.baseline(found.x)),

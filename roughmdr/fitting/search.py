@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from roughmdr.fitting.correlation import POOR, is_systematic
 from roughmdr.fitting.jumps import least_squares_between, with_measured_jumps
 from roughmdr.fitting.model import Model
-from roughmdr.fitting.residuals import POOR, is_systematic, relative_rms
 from roughmdr.fitting.slopes import slopes_of
 from roughmdr.numerics.arguments import Floats
 from roughmdr.storage.labelled import Array
@@ -87,7 +87,7 @@ def _search(model: Model) -> Found:
     start = model.begin
     first = with_measured_jumps(model, start) if model.jumps and model.exact else start
     found = [_follow(model, first)] if np.isfinite(model.deviations(first)).all() else []
-    if not found or is_systematic(found[0].residuals) or relative_rms(model.curve, found[0].deviations) > POOR:
+    if not found or is_systematic(found[0].residuals) or model.curve.relative_rms(found[0].deviations) > POOR:
         starts = np.concatenate([_other_starts(model), start[None]]) if first.any() else _other_starts(model)
         costs = [float(np.sum(np.square(model.deviations(x)))) for x in starts]
         best = [starts[i] for i in np.argsort(costs)[:_TRIED] if np.isfinite(costs[i])]

@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from roughmdr.errors import OutOfRange
 from roughmdr.fitting.correlation import (
+    POOR,
     Correlation,
     by_independent_noise,
     correlated,
@@ -16,7 +17,6 @@ from roughmdr.fitting.correlation import (
 from roughmdr.fitting.measured import MeasuredCurve
 from roughmdr.fitting.model import Model
 from roughmdr.fitting.profile import Edges, certain_edges, farthest, profiled
-from roughmdr.fitting.residuals import POOR, relative_rms
 from roughmdr.fitting.search import Found
 from roughmdr.fitting.slopes import yielded
 from roughmdr.numerics.arguments import Floats
@@ -146,7 +146,7 @@ def apart_from_the_rest(
 
 def noise_correlation(curve: MeasuredCurve, left: Floats, deviations: Floats) -> Correlation:
     """Return the correlation of the noise, which large deviations are not."""
-    return Correlation() if relative_rms(curve, deviations) > POOR else correlation_of_noise(left, deviations)
+    return Correlation() if curve.relative_rms(deviations) > POOR else correlation_of_noise(left, deviations)
 
 
 def by_noise(
