@@ -73,7 +73,7 @@ class Model:
         self.jumps = scene.asperities.equal_heights and self.adheres
         self._path = LoadingPath.along(curve.values, unload=False, adhesive=scene.work > 0.0)
         self.borne: Floats | None = None
-        """Load that the spring of a machine bears, where it is not that of the law."""
+        """Load that the spring of a machine bears where it is given; None where it is that of the law."""
         self._rule: ForceRule | None = None
         self.near: Spring | None = None
         """How the load on a machine changes near the last parameters whose slopes were found, where it does not jump.
@@ -88,11 +88,6 @@ class Model:
         self.evaluations = 0
         self._last, self._read = _NONE, (np.empty(0), scene)
         self.last_error: RoughmdrError = OutOfRange("the expected law is not finite")
-
-    @property
-    def exact(self) -> bool:
-        """Whether the spring of a machine bears the load of the law, not one that is given."""
-        return self.borne is None
 
     def along(self, curve: MeasuredCurve) -> "Model":
         """Return the model of another curve, with its own spring constant where that of this curve is the machine's."""
@@ -130,7 +125,7 @@ class Model:
 
     def force(self, x: Floats, values: Floats) -> Force:
         """Return the force, or pressure, of the law along a control; RoughmdrError where there is no law."""
-        if self.exact and self.near is not None and values is self.curve.values:
+        if self.borne is None and self.near is not None and values is self.curve.values:
             first = self._borne_by(x, self.near.load, None)
             load = self.near.found(first.force, lambda load: self._borne_by(x, load, first.rule).force)
             if load is not None:
@@ -173,14 +168,13 @@ class Model:
 
     def _path_in(self, scene: Scene, x: Floats, values: Floats) -> LoadingPath | MachinePath:
         """Return the path of the flat or of its machine in the scene."""
-        if self.curve.control == "separation" and values is self.curve.values:
+        if self.curve.control == "separation":  # along the measured steps alone
             return self._path.relative_to(-self._offset(x))
         steps = values + self._offset(x)
-        if self.curve.control == "remote" and self.exact:
+        if self.borne is None:
             return machine_path(scene, steps)
         borne = self.curve.load - self.baseline(x) if self.borne is self.curve.load else self.borne
-        stretch = 0.0 if borne is None else self.stretch(scene, borne)
-        return LoadingPath.along(steps + stretch, unload=False, adhesive=scene.work > 0.0)
+        return LoadingPath.along(steps + self.stretch(scene, borne), unload=False, adhesive=scene.work > 0.0)
 
     @contextmanager
     def held(self, *, load: Floats | None = None, rule: ForceRule | None = None) -> Iterator[None]:

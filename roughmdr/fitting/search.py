@@ -85,7 +85,7 @@ def _from_all_starts(model: Model) -> Found:
 
 def _search(model: Model) -> Found:
     start = model.begin
-    first = with_measured_jumps(model, start) if model.jumps and model.exact else start
+    first = with_measured_jumps(model, start) if model.jumps and model.borne is None else start
     found = [_follow(model, first)] if np.isfinite(model.deviations(first)).all() else []
     if not found or is_systematic(found[0].residuals) or model.curve.relative_rms(found[0].deviations) > POOR:
         starts = np.concatenate([_other_starts(model), start[None]]) if first.any() else _other_starts(model)

@@ -27,7 +27,7 @@ def slopes_of(model: Model, x: Floats) -> Floats:
     On a machine they are taken at the separations that the law has, and its spring yields to them.
     """
     middle = model.point(x)
-    if model.curve.control == "separation" or not (model.exact and middle.law.force.size):
+    if model.curve.control == "separation" or not (model.borne is None and middle.law.force.size):
         with model.held(load=model.borne, rule=middle.law.rule):
             told = any(p.key in _TOLD for p in model.parameters)
             return _at_given(model, middle, model.slopes(x, middle.law.rule) if told else None)
