@@ -12,7 +12,7 @@ import numpy as np
 
 from roughmdr.errors import RoughmdrError, SceneError
 from roughmdr.fitting.measured import MeasuredCurve
-from roughmdr.fitting.model import Model
+from roughmdr.fitting.model import LEAST_NOISE, Model
 from roughmdr.fitting.parameters import Known, free_parameters
 from roughmdr.fitting.search import Fitted, fitted
 from roughmdr.fitting.uncertainty import noise_correlation
@@ -27,7 +27,6 @@ RANGES = "adhesion.range", "adhesion.strength"
 _TABOR_NUMBERS = 0.3, 1.0, 3.0, 10.0  # Tabor numbers that are tried for the start of Dugdale's range
 _ANY_RANGE = 1e-9  # range [m] at which the Tabor number is asked for, which is inversely proportional to it
 _NOT_TOLD = 2.0  # difference of AICc up to which data do not tell models apart
-_NO_NOISE = 1e-12  # least deviation over the largest load that counts
 
 
 class Candidate(NamedTuple):
@@ -56,7 +55,7 @@ class Candidate(NamedTuple):
 
     def aicc(self, points: int, effective: float, *, stated: bool) -> float:
         """Return AICc up to a constant, with an effective number of independent points; inf where these are too few."""
-        parameters, mean = self.free + (not stated), max(self.squares / points, _NO_NOISE**2)  # one is the noise
+        parameters, mean = self.free + (not stated), max(self.squares / points, LEAST_NOISE**2)  # one is the noise
         spare = effective - parameters - 1
         if not (spare > 0.0 and mean < math.inf):
             return math.inf
