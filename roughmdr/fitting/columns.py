@@ -62,11 +62,10 @@ def _of_text(path: Path) -> Columns:
     else:
         titles = _SPACED_HEADER.findall(header)
         entries = [line.split() for _, line in lines[1:]]
-    places = [f"line {number}" for number, _ in lines[1:]]
     if separator and not titles[-1].strip() and all(row and not row[-1].strip() for row in entries):
         titles, entries = titles[:-1], [row[:-1] for row in entries]  # a delimiter ends each line
     rows = Rows()
-    for place, row in zip(places, entries, strict=True):
+    for (place, _), row in zip(lines[1:], entries, strict=True):
         if len(row) != len(titles):
             hint = "; write decimal points" if separator == "," and len(row) == 2 * len(titles) else ""
             raise RoughmdrError(f"{place}: has {len(row)} entries; the first line names {len(titles)} columns{hint}")
@@ -103,12 +102,12 @@ def _content(path: Path) -> bytes:
     return content
 
 
-def _lines(text: str) -> Iterator[tuple[int, str]]:
-    """Yield the lines that are neither empty nor comments, with their numbers."""
+def _lines(text: str) -> Iterator[tuple[str, str]]:
+    """Yield the lines that are neither empty nor comments, each after its position in words."""
     for number, line in enumerate(text.splitlines(), start=1):
         kept = line.partition("#")[0]
         if kept.strip():
-            yield number, kept
+            yield f"line {number}", kept
 
 
 def _of_dataset(dataset: Any) -> Columns:
