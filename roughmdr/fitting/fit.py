@@ -8,11 +8,12 @@ from typing import TYPE_CHECKING, Any
 
 from roughmdr.errors import SceneError, StoreError, warn_limits
 from roughmdr.fitting.compare import RANGES, best_model
-from roughmdr.fitting.curves import assembled, first_of, fit_each, taken_apart
+from roughmdr.fitting.curves import first_of, fit_each, taken_apart
 from roughmdr.fitting.measured import MeasuredCurve
 from roughmdr.fitting.model import Model
 from roughmdr.fitting.parameters import MACHINE, Known
 from roughmdr.fitting.posterior import check_package
+from roughmdr.fitting.result import assembled
 from roughmdr.fitting.search import fitted
 from roughmdr.fitting.stored import read_fit
 from roughmdr.fitting.words import curve_names, parameter_names

@@ -1,14 +1,16 @@
 """The result of a fit: parameters with intervals, their covariance, the measured and the fitted curve."""
 
+import time
+
 import numpy as np
 from numpy.typing import ArrayLike
 
 from roughmdr.fitting.doubts import doubts
 from roughmdr.fitting.model import Model
 from roughmdr.fitting.parameters import Parameter
-from roughmdr.fitting.posterior import Posterior
+from roughmdr.fitting.posterior import posterior_of
 from roughmdr.fitting.search import Fitted, Found
-from roughmdr.fitting.uncertainty import Uncertainty
+from roughmdr.fitting.uncertainty import Uncertainty, uncertainty
 from roughmdr.loading.path import labelled_branches
 from roughmdr.result.trust import trust_lines
 from roughmdr.schema.units import format_quantity, spelled_in_results
@@ -29,17 +31,18 @@ _CONSTANT = "spring constant that the file of the curve tells"
 _CONTROLS = {"separation": "separation", "remote": "position of the far end of the spring"}
 
 
-def assemble(
-    fitted: Fitted, known: Uncertainty, seconds: float, command: str, posterior: Posterior | None = None
-) -> Labelled:
-    """Return the result of a fit, as it is stored."""
-    model, found, compared, undecided = fitted
+def assembled(command: str, fit: Fitted, *, posterior: bool = False) -> Labelled:
+    """Return the result of a search with its uncertainty, and draws from the posterior where they are asked for."""
+    started, (model, found, compared, undecided) = time.perf_counter(), fit
+    known = uncertainty(model, found)
+    draws = posterior_of(model, found, known) if posterior else None
+    seconds = model.seconds + time.perf_counter() - started
     law, scene, curve = model.law(found.x), model.fitted(found.x), model.curve
     variables: dict[str, Array] = {}
     for i, parameter in enumerate(model.parameters):
         variables |= _of_parameter(parameter, i, found, known)
-        if posterior is not None:
-            values, unit = np.vectorize(parameter.value)(posterior.x[:, :, i]), spelled_in_results(parameter.unit)
+        if draws is not None:
+            values, unit = np.vectorize(parameter.value)(draws.x[:, :, i]), spelled_in_results(parameter.unit)
             drawn = f"draws of {parameter.key} from the posterior"
             variables[f"{parameter.name}_posterior"] = _array(values, unit, drawn, ("chain", "draw"))  # as ArviZ
     for name, matrix in (("covariance", known.covariance), ("correlation", known.correlation)):
@@ -67,7 +70,7 @@ def assemble(
     warnings = [*undecided, *doubts(model, found, known), *law.warnings]
     if any(stage.replaces_contacts for stage in scene.stages) and law.yielding()["plastic_contact_fraction"] == 0.0:
         warnings.append("no contact of the fitted law yields: begin the search with a lower strength")
-    if posterior is not None and not posterior.long_enough:
+    if draws is not None and not draws.long_enough:
         warnings.append("the chains are too short to tell the posterior well: free less, or give priors")
     interaction = None if scene.interaction is None else scene.interaction.model
     attrs = {
@@ -79,9 +82,9 @@ def assemble(
         "intervals": _intervals(model, known),
         "trust": dict(trust_lines(law.model_error.named, interaction=interaction))["trust"],
     }
-    if posterior is not None:
+    if draws is not None:
         law_error = "without" if known.error_of_law is None else "with"
-        attrs["posterior"] = f"about {posterior.independent:.0f} independent draws, {law_error} the error of the law"
+        attrs["posterior"] = f"about {draws.independent:.0f} independent draws, {law_error} the error of the law"
         attrs["references"] += f"; {_CHAINS}"
     if warnings:
         attrs["warnings"] = "\n".join(warnings)
