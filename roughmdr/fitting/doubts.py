@@ -135,7 +135,7 @@ def _told_apart(group: list[int], parameters: list[Parameter], known: Uncertaint
         exponents = best / np.abs(best).max() * np.sign(best[np.abs(best).argmax()])
         combination = np.zeros(len(parameters))
         combination[group] = exponents
-        error = 100.0 * float(known.deviation_of(combination))
+        error = 100.0 * known.deviation_of(combination)
         product = " * ".join(_power(each.key, float(power)) for each, power in zip(pair, exponents, strict=True))
         return f"{text}; it determines {product}, to {error:.2g} %"
     if any(parameter.logarithmic for parameter in pair):

@@ -10,7 +10,7 @@ from roughmdr.fitting.model import Model
 from roughmdr.fitting.parameters import Parameter
 from roughmdr.fitting.posterior import posterior_of
 from roughmdr.fitting.search import Fitted, Found
-from roughmdr.fitting.uncertainty import Uncertainty, uncertainty
+from roughmdr.fitting.uncertainty import Uncertainty, correlation_of, uncertainty
 from roughmdr.loading.path import labelled_branches
 from roughmdr.result.trust import trust_lines
 from roughmdr.schema.units import format_quantity, spelled_in_results
@@ -45,7 +45,7 @@ def assembled(command: str, fit: Fitted, *, posterior: bool = False) -> Labelled
             values, unit = np.vectorize(parameter.value)(draws.x[:, :, i]), spelled_in_results(parameter.unit)
             drawn = f"draws of {parameter.key} from the posterior"
             variables[f"{parameter.name}_posterior"] = _array(values, unit, drawn, ("chain", "draw"))  # as ArviZ
-    for name, matrix in (("covariance", known.covariance), ("correlation", known.correlation)):
+    for name, matrix in (("covariance", known.covariance), ("correlation", correlation_of(known.influence))):
         variables[name] = _array(matrix, "1", f"{name} of the numbers that were fitted", _PAIR)
     variables["covariance"].attrs["comment"] = _COVARIED
     keys, scales = ([getattr(each, name) for each in model.parameters] for name in ("key", "scale"))
@@ -107,7 +107,7 @@ def _intervals(model: Model, known: Uncertainty) -> str:
 
 def _of_parameter(parameter: Parameter, i: int, found: Found, known: Uncertainty) -> dict[str, Array]:
     """Return a parameter with its standard error and its interval, limited to the bounds of the search."""
-    x, error = float(found.x[i]), float(known.standard_error[i])
+    x, error = float(found.x[i]), known.deviation_of(np.eye(found.x.size)[i])
     (lower, upper), per_x, key = known.reach[:, i], parameter.per_x(x), parameter.key
     unit = spelled_in_results(parameter.unit)
     numbers = {
