@@ -3,7 +3,7 @@
 import time
 from collections.abc import Mapping
 from functools import partial
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -13,9 +13,6 @@ from roughmdr.fitting.model import Model
 from roughmdr.fitting.slopes import slopes_of
 from roughmdr.numerics.arguments import Floats
 from roughmdr.storage.labelled import Array
-
-if TYPE_CHECKING:
-    from scipy.optimize import OptimizeResult
 
 _UNTIL: dict[str, Any] = {"ftol": 1e-10, "xtol": 1e-7, "gtol": 1e-12, "max_nfev": 60}
 _STARTS, _TRIED = 16, 3  # other starts per parameter, and number of them that are followed
@@ -111,7 +108,7 @@ def _follow(model: Model, start: Floats) -> Found:
     if not start.size:
         return Found(start, deviations, np.empty((points, 0)), True, points)
     begin, slopes = np.clip(start, *model.bounds), partial(slopes_of, model)
-    result: OptimizeResult = least_squares(model.deviations, begin, slopes, model.bounds, **_UNTIL)
+    result: Any = least_squares(model.deviations, begin, slopes, model.bounds, **_UNTIL)
     return Found(result.x, result.fun, result.jac, result.status > 0, points)
 
 
