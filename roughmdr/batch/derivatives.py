@@ -1,5 +1,6 @@
 """Derivatives of expected laws with respect to numbers of their scenes, by differences that tell their own error."""
 
+from itertools import product
 from typing import NamedTuple
 
 import numpy as np
@@ -72,18 +73,16 @@ class _Number(NamedTuple):
 
 def check_derivatives(plan: Plan) -> None:
     """Raise SceneError where a law of a plan cannot be differentiated as its scene asks."""
-    keys, estimators = plan.scene.output.derivatives, {*plan.scene.estimators}
-    for key in keys if estimators == {"expected"} else ():
-        for cell in plan.cells:
-            try:
-                for side in (_SIDES[0], _SIDES[-1]):
-                    _varied(cell, key, _number(cell, key), side)
-            except RoughmdrError as error:
-                told = f"{error}; it is changed by {2.0 * _STEP:g} of it, or of its scale, to both sides"
-                raise plan.scene.located(SceneError.of([Fault("output.derivatives", key, told)])) from None
-    if keys and estimators != {"expected"}:
+    keys = plan.scene.output.derivatives
+    if keys and {*plan.scene.estimators} != {"expected"}:
         told = 'are those of an expected law: batch.estimator = "expected"'
         raise plan.scene.located(SceneError.of([Fault("output.derivatives", short_repr(keys), told)]))
+    for key, cell, side in product(keys, plan.cells, (_SIDES[0], _SIDES[-1])):
+        try:
+            _varied(cell, key, _number(cell, key), side)
+        except RoughmdrError as error:
+            told = f"{error}; it is changed by {2.0 * _STEP:g} of it, or of its scale, to both sides"
+            raise plan.scene.located(SceneError.of([Fault("output.derivatives", key, told)])) from None
 
 
 def _derivatives(cell: Cell, names: list[str], keys: list[str]) -> Floats:

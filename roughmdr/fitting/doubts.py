@@ -136,7 +136,7 @@ def _told_apart(group: list[int], parameters: list[Parameter], known: Uncertaint
         combination = np.zeros(len(parameters))
         combination[group] = exponents
         error = 100.0 * known.deviation_of(combination)
-        product = " * ".join(_power(each.key, float(power)) for each, power in zip(pair, exponents, strict=True))
+        product = " * ".join(f"{key}^{each:.2g}".removesuffix("^1") for key, each in zip(names, exponents, strict=True))
         return f"{text}; it determines {product}, to {error:.2g} %"
     if any(parameter.logarithmic for parameter in pair):
         power, exponent = (0, 1) if pair[0].logarithmic else (1, 0)
@@ -149,8 +149,3 @@ def _told_apart(group: list[int], parameters: list[Parameter], known: Uncertaint
     ratio = float(weights[1] / weights[0])
     part = "" if abs(abs(ratio) - 1.0) < 0.005 else f"{abs(ratio):.2g} "
     return f"{text}; it determines {names[0]} {'+' if ratio > 0.0 else '-'} {part}{names[1]}"
-
-
-def _power(key: str, exponent: float) -> str:
-    text = f"{exponent:.2g}"
-    return key if text == "1" else f"{key}^{text}"
