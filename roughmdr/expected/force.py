@@ -44,11 +44,11 @@ class Force(NamedTuple):
     """The force of the expected law along a path."""
 
     force: Floats
-    """[N]"""
+    """[N]; of a fitted law of pressures [Pa]."""
     error: float
     """Error bound over the largest force."""
     changes: Changes
-    """Where populations of one height make and lose contact."""
+    """Where populations of one height make and lose contact; not known of a mean law on a machine."""
     rule: ForceRule | None
     """The rule by which it was found; None where steps had rules of their own."""
 

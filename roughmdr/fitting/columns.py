@@ -6,10 +6,10 @@ import re
 from collections.abc import Iterator
 from contextlib import suppress
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 from roughmdr.errors import RoughmdrError, StoreError
-from roughmdr.fitting.formats import read_instrument, read_text
+from roughmdr.fitting.formats import Columns, Rows, read_instrument, read_text
 from roughmdr.schema.wording import short_repr
 from roughmdr.storage.files import check_regular_file, is_open_pipe
 from roughmdr.storage.result_file import FIT
@@ -25,23 +25,6 @@ _SPACED_HEADER = re.compile(rf"[^\s\[(/]+(?:\s*(?:{_UNIT}))?")
 _DECIMAL_COMMA = re.compile(r"([-+]?\d*),(\d+(?:e[-+]?\d+)?)", re.IGNORECASE)
 _CONTROL = re.compile("separation|remote|piezo", re.IGNORECASE)
 _MAX_BYTES = 2**28
-
-
-class Columns(NamedTuple):
-    """A measurement as it was given."""
-
-    origin: str
-    """File or argument, in messages."""
-    names: list[str]
-    units: list[str]
-    """Units as the file spells them; empty for SI."""
-    rows: list[tuple[str, list[object]]]
-    """Position of each row, in words for messages, and its entries."""
-    file: Path | None = None
-    stiffness: float | None = None
-    """Spring constant that the file tells [N/m]."""
-    about: str = ""
-    """The format that was found, and what was taken from it, in words."""
 
 
 def read_columns(measured: "str | Path | pd.DataFrame | xr.Dataset") -> Columns:
@@ -68,8 +51,7 @@ def _of_text(path: Path) -> Columns:
         with suppress(RoughmdrError):  # text of an instrument that afmformats alone knows, where it is installed
             curve = read_instrument(path)
     if curve is not None:
-        control, rows, stiffness, about = curve
-        return Columns(str(path), [control, "force"], ["", ""], rows, path, stiffness, about)
+        return curve._replace(origin=str(path))
     if not lines:
         raise RoughmdrError("is empty; expected a line with the names of the columns, and rows")
     _, header = lines[0]
@@ -80,16 +62,15 @@ def _of_text(path: Path) -> Columns:
     else:
         titles = _SPACED_HEADER.findall(header)
         entries = [line.split() for _, line in lines[1:]]
-    places = [f"line {number}" for number, _ in lines[1:]]
     if separator and not titles[-1].strip() and all(row and not row[-1].strip() for row in entries):
         titles, entries = titles[:-1], [row[:-1] for row in entries]  # a delimiter ends each line
-    rows = list[tuple[str, list[object]]]()
-    for place, row in zip(places, entries, strict=True):
+    rows = Rows()
+    for (place, _), row in zip(lines[1:], entries, strict=True):
         if len(row) != len(titles):
             hint = "; write decimal points" if separator == "," and len(row) == 2 * len(titles) else ""
             raise RoughmdrError(f"{place}: has {len(row)} entries; the first line names {len(titles)} columns{hint}")
         rows.append((place, [_with_point(entry.strip()) for entry in row]))
-    return _titled(str(path), titles, rows)._replace(file=path)
+    return _titled(str(path), titles, rows)
 
 
 def _decoded(content: bytes) -> str:
@@ -121,12 +102,12 @@ def _content(path: Path) -> bytes:
     return content
 
 
-def _lines(text: str) -> Iterator[tuple[int, str]]:
-    """Yield the lines that are neither empty nor comments, with their numbers."""
+def _lines(text: str) -> Iterator[tuple[str, str]]:
+    """Yield the lines that are neither empty nor comments, each after its position in words."""
     for number, line in enumerate(text.splitlines(), start=1):
         kept = line.partition("#")[0]
         if kept.strip():
-            yield number, kept
+            yield f"line {number}", kept
 
 
 def _of_dataset(dataset: Any) -> Columns:
@@ -139,10 +120,10 @@ def _of_dataset(dataset: Any) -> Columns:
     rows = [(f"row {number}", list(row)) for number, row in enumerate(values)]
     units = [str(each.attrs.get("units", "")) for each in found.values()]
     stiffness = dataset.get("spring_constant") if dataset.attrs.get("kind") == FIT else None
-    return Columns("measured", list(found), units, rows, stiffness=None if stiffness is None else float(stiffness))
+    return Columns("measured", list(found), units, rows, None if stiffness is None else float(stiffness))
 
 
-def _titled(origin: str, titles: list[str], rows: list[tuple[str, list[object]]]) -> Columns:
+def _titled(origin: str, titles: list[str], rows: Rows) -> Columns:
     """Return the columns of these titles, each a name and perhaps a unit: "force [mN]", "force (mN)" or "force/mN"."""
     names, units = [], []
     for title in titles:

@@ -12,10 +12,9 @@ import numpy as np
 
 from roughmdr.errors import RoughmdrError, SceneError
 from roughmdr.fitting.measured import MeasuredCurve
-from roughmdr.fitting.model import Model
+from roughmdr.fitting.model import LEAST_NOISE, Model
 from roughmdr.fitting.parameters import Known, free_parameters
-from roughmdr.fitting.residuals import relative_rms
-from roughmdr.fitting.search import Fitted, Found, fitted
+from roughmdr.fitting.search import Fitted, fitted
 from roughmdr.fitting.uncertainty import noise_correlation
 from roughmdr.numerics.arguments import Floats
 from roughmdr.scene import Scene, read
@@ -28,7 +27,6 @@ RANGES = "adhesion.range", "adhesion.strength"
 _TABOR_NUMBERS = 0.3, 1.0, 3.0, 10.0  # Tabor numbers that are tried for the start of Dugdale's range
 _ANY_RANGE = 1e-9  # range [m] at which the Tabor number is asked for, which is inversely proportional to it
 _NOT_TOLD = 2.0  # difference of AICc up to which data do not tell models apart
-_NO_NOISE = 1e-12  # least deviation over the largest load that counts
 
 
 class Candidate(NamedTuple):
@@ -57,7 +55,7 @@ class Candidate(NamedTuple):
 
     def aicc(self, points: int, effective: float, *, stated: bool) -> float:
         """Return AICc up to a constant, with an effective number of independent points; inf where these are too few."""
-        parameters, mean = self.free + (not stated), max(self.squares / points, _NO_NOISE**2)  # one is the noise
+        parameters, mean = self.free + (not stated), max(self.squares / points, LEAST_NOISE**2)  # one is the noise
         spare = effective - parameters - 1
         if not (spare > 0.0 and mean < math.inf):
             return math.inf
@@ -114,7 +112,7 @@ def best_model(scene: Scene, curve: MeasuredCurve, free: list[str], known: Known
 def _table(candidates: list[Candidate], aicc: Floats) -> dict[str, Array]:
     """Return the arrays over ``model``; those without units are texts."""
     weight = np.exp(-0.5 * (aicc - aicc.min()))
-    sizes = [relative_rms(c.fit.model.curve, c.fit.found.deviations) if c.fit else math.inf for c in candidates]
+    sizes = [c.fit.model.curve.relative_rms(c.fit.found.deviations) if c.fit else math.inf for c in candidates]
     numbers: dict[str, tuple[Any, str]] = {
         "aicc": (aicc, "corrected Akaike criterion, up to a constant; infinite where there is no fit"),
         "akaike_weight": (weight / weight.sum(), "Akaike weight"),
@@ -138,18 +136,9 @@ def _with(scene: Scene, adhesion: dict[str, Any]) -> Scene:
 
 def _fitted(name: str, made: Callable[[], Model]) -> Candidate:
     try:
-        model = made()
-        return Candidate(name, fitted(model) if model.parameters else Fitted(model, _as_it_is(model)))
+        return Candidate(name, fitted(made()))
     except RoughmdrError as error:
         return Candidate(name, None, str(error))
-
-
-def _as_it_is(model: Model) -> Found:
-    """Return the deviations of a model without parameters; RoughmdrError where it has no law."""
-    x, deviations, *_ = model.point_at(np.empty(0))
-    if not np.isfinite(deviations).all():
-        raise model.last_error
-    return Found(x, deviations, np.empty((deviations.size, 0)), True, model.curve.load.size)
 
 
 def _dugdale(scene: Scene, near: Scene, free: list[str], model_of: Callable[[Scene, list[str]], Model]) -> Model:

@@ -6,6 +6,9 @@ import numpy as np
 
 from roughmdr.numerics.arguments import Floats
 
+POOR = 0.05
+"""R.m.s. deviation over the largest load from which other starts are tried too, and deviations are no noise."""
+_LIMIT = 3.3  # standard deviations of the sum of products of neighbours, which chance exceeds once in a thousand curves
 _CHANCE = 2.0  # standard deviations of the correlation of neighbours, which noise exceeds once in 44 curves
 _MOST = 0.9999  # largest correlation that is sought
 _FEWEST = 1.5  # least effective number of steps: what is correlated over more of the curve is a misfit
@@ -25,6 +28,16 @@ class Correlation(NamedTuple):
     def effective(self, steps: int) -> float:
         """Return the number of independent steps that would tell a mean as well, n (1 - rho)/(1 + rho)."""
         return steps * (1.0 - self.rho) / (1.0 + self.rho)
+
+
+def is_systematic(deviations: Floats) -> bool:
+    """Return whether neighbours deviate to the same side more often than those of noise do, even or uneven.
+
+    Products of neighbours have mean 0 if all are independent, however large each may be.
+    """
+    products = deviations[1:] * deviations[:-1]
+    size = float(np.sqrt(np.sum(np.square(products))))
+    return bool(products.sum() > _LIMIT * size)
 
 
 def correlation_of_noise(left: Floats, residuals: Floats) -> Correlation:

@@ -1,7 +1,6 @@
 """Many measured curves: taken apart, fitted one by one, and put together over the dimension ``curve``."""
 
 import os
-import time
 from collections import Counter
 from collections.abc import Callable, Mapping
 from contextlib import suppress
@@ -11,12 +10,12 @@ from typing import Any
 import numpy as np
 
 from roughmdr.errors import OutOfRange, RoughmdrError, StoreError
-from roughmdr.fitting.columns import Columns, read_columns
+from roughmdr.fitting.columns import read_columns
+from roughmdr.fitting.formats import Columns, Rows
 from roughmdr.fitting.joint import agree
 from roughmdr.fitting.measured import MeasuredCurve, read_measured
 from roughmdr.fitting.model import Model
-from roughmdr.fitting.posterior import posterior_of
-from roughmdr.fitting.result import assemble
+from roughmdr.fitting.result import assembled
 from roughmdr.fitting.search import Fitted, fitted
 from roughmdr.fitting.uncertainty import uncertainty
 from roughmdr.numerics.arguments import Floats
@@ -61,7 +60,7 @@ def taken_apart(measured: Any) -> Curves | Columns:
 
 def _split(columns: Columns) -> list[tuple[str, Columns]]:
     """Return the rows of each curve that the column ``curve`` names."""
-    at, rows = columns.names.index("curve"), dict[str, list[tuple[str, list[object]]]]()
+    at, rows = columns.names.index("curve"), dict[str, Rows]()
     kept = [i for i in range(len(columns.names)) if i != at]
     rest = columns._replace(names=[columns.names[i] for i in kept], units=[columns.units[i] for i in kept])
     for place, row in columns.rows:
@@ -86,13 +85,6 @@ def first_of(curves: Curves, parameters: int) -> MeasuredCurve:
         with suppress(RoughmdrError):
             return read_measured(measured, parameters)
     return read_measured(next(iter(curves.values())), parameters)
-
-
-def assembled(command: str, fit: Fitted, *, posterior: bool = False) -> Labelled:
-    """Return the result of a search with its uncertainty, and draws from the posterior where they are asked for."""
-    started, known = time.perf_counter(), uncertainty(fit.model, fit.found)
-    draws = posterior_of(fit.model, fit.found, known) if posterior else None
-    return assemble(fit, known, fit.model.seconds + time.perf_counter() - started, command, draws)
 
 
 def fit_each(curves: Curves, first: Model, command: str, *, shared: list[str], workers: int, quiet: bool) -> Labelled:

@@ -6,10 +6,10 @@ from collections.abc import Iterator
 import numpy as np
 
 from roughmdr.errors import RoughmdrError
+from roughmdr.fitting.correlation import is_systematic
 from roughmdr.fitting.model import Model
 from roughmdr.fitting.parameters import Parameter
-from roughmdr.fitting.residuals import is_above_noise, is_systematic, noise_of, relative_rms
-from roughmdr.fitting.search import Found, search
+from roughmdr.fitting.search import Found, fitted
 from roughmdr.fitting.uncertainty import Uncertainty, apart_from_the_rest, correlation_of
 from roughmdr.numerics.arguments import Floats
 from roughmdr.schema.units import format_quantity
@@ -40,7 +40,7 @@ def doubts(model: Model, found: Found, known: Uncertainty) -> Iterator[str]:
     if not found.converged:
         yield "the search ended before it converged"
     if is_systematic(found.residuals) and not known.noise.rho:
-        rms = 100.0 * relative_rms(model.curve, found.deviations)
+        rms = 100.0 * model.curve.relative_rms(found.deviations)
         yield (
             f"the residuals are systematic ({rms:.2g} % r.m.s.): the scene does not describe the curve, and the "
             "intervals mean little"
@@ -58,9 +58,9 @@ def _of_the_curve(model: Model, found: Found) -> Iterator[str]:
     curve, name, steps = model.curve, model.curve.quantity, np.diff(model.curve.values)
     sums = [float(np.sum(np.square(each))) for each in ((curve.load - curve.level) / curve.weight, found.residuals)]
     noise = 1.0 if curve.error is not None else sums[1] / curve.load.size
-    if sums[0] - sums[1] < _BETTER * noise and not is_above_noise(curve, found.deviations):
+    if sums[0] - sums[1] < _BETTER * noise and not curve.has_less_noise(found.deviations):
         yield f"the {name} is noise along the whole curve, which shows no contact"
-    band = max(_BAND * noise_of(curve), _FLAT * float(np.ptp(curve.load)))
+    band = max(_BAND * curve.noise, _FLAT * float(np.ptp(curve.load)))
     top, next_to_it = (np.sum(np.floor((curve.load.max() - curve.load) / band) == i) for i in (0, 1))
     if top > max(_ROWS, _LONGER * next_to_it) and np.ptp(curve.load) > _LONGER * band:
         most = format_quantity(float(curve.load.max()), curve.unit)
@@ -72,18 +72,18 @@ def _of_the_curve(model: Model, found: Found) -> Iterator[str]:
 
 def _backwards(model: Model, found: Found, known: Uncertainty) -> Iterator[str]:
     """Yield a doubt where an adhesive law, which depends on the sense of motion, fits the curve better from its end."""
-    if not (model.adheres and is_above_noise(model.curve, found.deviations)):
+    if not (model.adheres and model.curve.has_less_noise(found.deviations)):
         return
     other = model.along(model.curve.backwards())
     other.told, other.spread, other.noise = model.told, model.spread, model.noise
     try:
-        deviations = search(other).residuals
+        deviations = fitted(other).found.residuals
     except RoughmdrError:
         return
     here, there = (float(np.mean(np.square(each))) for each in (found.residuals, deviations))
     points = known.noise.effective(deviations.size)
     if (here - there) * points > _BETTER * (there if model.curve.error is None else 1.0):
-        sizes = [100.0 * relative_rms(model.curve, found.deviations), 100.0 * relative_rms(other.curve, deviations)]
+        sizes = [100.0 * model.curve.relative_rms(found.deviations), 100.0 * other.curve.relative_rms(deviations)]
         yield (
             f"read from its last row to its first the curve is fitted better, to {sizes[1]:.2g} % r.m.s. in place of "
             f"{sizes[0]:.2g} %: rows must be in the order of measurement, for adhesion tells loading from unloading"
@@ -135,8 +135,8 @@ def _told_apart(group: list[int], parameters: list[Parameter], known: Uncertaint
         exponents = best / np.abs(best).max() * np.sign(best[np.abs(best).argmax()])
         combination = np.zeros(len(parameters))
         combination[group] = exponents
-        error = 100.0 * float(known.deviation_of(combination))
-        product = " * ".join(_power(each.key, float(power)) for each, power in zip(pair, exponents, strict=True))
+        error = 100.0 * known.deviation_of(combination)
+        product = " * ".join(f"{key}^{each:.2g}".removesuffix("^1") for key, each in zip(names, exponents, strict=True))
         return f"{text}; it determines {product}, to {error:.2g} %"
     if any(parameter.logarithmic for parameter in pair):
         power, exponent = (0, 1) if pair[0].logarithmic else (1, 0)
@@ -149,8 +149,3 @@ def _told_apart(group: list[int], parameters: list[Parameter], known: Uncertaint
     ratio = float(weights[1] / weights[0])
     part = "" if abs(abs(ratio) - 1.0) < 0.005 else f"{abs(ratio):.2g} "
     return f"{text}; it determines {names[0]} {'+' if ratio > 0.0 else '-'} {part}{names[1]}"
-
-
-def _power(key: str, exponent: float) -> str:
-    text = f"{exponent:.2g}"
-    return key if text == "1" else f"{key}^{text}"

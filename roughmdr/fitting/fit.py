@@ -8,14 +8,15 @@ from typing import TYPE_CHECKING, Any
 
 from roughmdr.errors import SceneError, StoreError, warn_limits
 from roughmdr.fitting.compare import RANGES, best_model
-from roughmdr.fitting.curves import assembled, first_of, fit_each, taken_apart
+from roughmdr.fitting.curves import first_of, fit_each, taken_apart
 from roughmdr.fitting.measured import MeasuredCurve
 from roughmdr.fitting.model import Model
 from roughmdr.fitting.parameters import MACHINE, Known
 from roughmdr.fitting.posterior import check_package
+from roughmdr.fitting.result import assembled
 from roughmdr.fitting.search import fitted
 from roughmdr.fitting.stored import read_fit
-from roughmdr.fitting.words import curve_names, parameter_keys
+from roughmdr.fitting.words import curve_names, parameter_names
 from roughmdr.runner.backend import Backend
 from roughmdr.scene import Scene, read
 from roughmdr.scene.keys import entry_at, set_key
@@ -168,13 +169,12 @@ def fit_labelled(
         if not fresh:
             check_same_kind(out, FIT)
             _check_nothing_lost(out, [*free, *curves, *(RANGES if auto else ())])
-    if auto:
-        result = assembled(command, best_model(validated, curve, free, known), posterior=options.posterior)
-    elif curves:
+    if curves:
         model, workers, quiet = Model(validated, curve, free, known), options.workers, options.quiet
         result = fit_each(curves, model, command, shared=shared, workers=workers, quiet=quiet)
     else:
-        result = assembled(command, fitted(Model(validated, curve, free, known)), posterior=options.posterior)
+        best = best_model(validated, curve, free, known) if auto else fitted(Model(validated, curve, free, known))
+        result = assembled(command, best, posterior=options.posterior)
     if out is not None:
         write_netcdf(result, out)
     return result
@@ -217,7 +217,7 @@ def _check_nothing_lost(out: Path, kept: list[str]) -> None:
     if not out.exists():
         return
     old = read_fit(out)
-    lost = [name for name in [*parameter_keys(old), *curve_names(old)] if name not in kept]
+    lost = [name for name in [*parameter_names(old), *curve_names(old)] if name not in kept]
     if lost:
         named = ", ".join(lost[:_NAMED]) + f" and {len(lost) - _NAMED} more" * (len(lost) > _NAMED)
         raise StoreError(f"{out}: holds a fit of {named} too: give another output, or --fresh to replace it")

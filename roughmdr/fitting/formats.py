@@ -19,6 +19,21 @@ Rows = list[tuple[str, list[Any]]]
 """The position of each row in the file, in words for messages, and its entries."""
 
 
+class Columns(NamedTuple):
+    """A measurement as it was given."""
+
+    origin: str
+    """File or argument, in messages."""
+    names: list[str]
+    units: list[str]
+    """Units as the file spells them; empty for SI."""
+    rows: Rows
+    stiffness: float | None = None
+    """Spring constant that the file tells [N/m]."""
+    about: str = ""
+    """The format that was found, and what was taken from it, in words."""
+
+
 class Segment(NamedTuple):
     """An approach to the surface or a retract from it, with the name and the unit of each channel."""
 
@@ -40,13 +55,11 @@ class Format(NamedTuple):
     """Force or deflection."""
 
 
-Curve = tuple[str, Rows, float | None, str]
-"""A force curve: "separation" or "remote", that [m] and the force [N], compression positive, in approach and then in
-retract, the spring constant [N/m], and what was read in words."""
+def read_text(text: str) -> Columns | None:
+    """Return the force curve in a text; None where no AFM program wrote it, RoughmdrError where it cannot be used.
 
-
-def read_text(text: str) -> Curve | None:
-    """Return the force curve in a text; None where no AFM program wrote it, RoughmdrError where it cannot be used."""
+    Its columns are "separation" or "remote" [m] and the force [N], compression positive, in approach and then retract.
+    """
     form = next((each for each in FORMATS if re.search(each.line, text, re.MULTILINE)), None)
     if form is None:
         return None
@@ -57,7 +70,7 @@ def read_text(text: str) -> Curve | None:
     return _curve(form, *found)
 
 
-def read_instrument(path: Path) -> Curve:
+def read_instrument(path: Path) -> Columns:
     """Return the one force curve in a file that afmformats reads; RoughmdrError where there is none."""
     try:
         from afmformats import errors, load_data
@@ -79,7 +92,7 @@ def read_instrument(path: Path) -> Curve:
     return _curve(_TABLE._replace(name=curves[0].metadata["format"]), segments, curves[0].metadata)
 
 
-def _curve(form: Format, segments: list[Segment], about: Mapping[str, Any]) -> Curve:
+def _curve(form: Format, segments: list[Segment], about: Mapping[str, Any]) -> Columns:
     """Return the control and the force, with their signs and their order; RoughmdrError where they are not there."""
     if not segments:
         raise RoughmdrError(f"{form.name}: holds no approach and no retract")
@@ -104,7 +117,7 @@ def _curve(form: Format, segments: list[Segment], about: Mapping[str, Any]) -> C
     control = "separation" if at[0][0] in form.tip.split(",") else "remote"
     said = f"{form.name}: {control} from {at[0][0]}, force from {force[0][0]}"
     said += f", spring constant {format_quantity(stiffness, 'N/m')}" if stiffness else ""
-    return control, rows, stiffness or None, said
+    return Columns("", [control, "force"], ["", ""], rows, stiffness or None, said)
 
 
 Picked = tuple[tuple[str, str], float]

@@ -39,12 +39,12 @@ class Jumps(NamedTuple):
 
 def jumps_at(model: Model, x: Floats) -> Jumps | None:
     """Return where the contact is made and lost; None where the law, there or nearby, has no or other jumps."""
-    here = model.point(x)
+    here = model.point(x).law.changes.control
     changes = np.where(x + _LITTLE > model.bounds[1], -_LITTLE, _LITTLE)
-    found = [model.point_at(each).control for each in x + np.diag(changes)] if here.jumps else []
-    if not found or any(each.size != here.control.size for each in found):
+    found = [model.point_at(each).law.changes.control for each in x + np.diag(changes)] if here.size else []
+    if not found or any(each.size != here.size for each in found):
         return None
-    return Jumps(here.control, np.stack([each - here.control for each in found], axis=1) / changes)
+    return Jumps(here, np.stack([each - here for each in found], axis=1) / changes)
 
 
 def with_measured_jumps(model: Model, x: Floats) -> Floats:
@@ -117,7 +117,7 @@ def nearest_in(model: Model, point: Point, interval: Interval, jumps: Jumps | No
         point = model.point(np.clip(point.x + step, low, high))
         if point.jumps == interval:
             return point
-        jumps = jumps._replace(control=point.control)
+        jumps = jumps._replace(control=point.law.changes.control)
     return None
 
 

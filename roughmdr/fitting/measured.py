@@ -6,7 +6,8 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from roughmdr.errors import RoughmdrError, StoreError
-from roughmdr.fitting.columns import Columns, read_columns
+from roughmdr.fitting.columns import read_columns
+from roughmdr.fitting.formats import Columns
 from roughmdr.numerics.arguments import Floats
 from roughmdr.schema.units import format_quantity, quantity, unit_factor
 from roughmdr.schema.wording import printable, short_repr, suggestion
@@ -17,6 +18,8 @@ if TYPE_CHECKING:
     import xarray as xr
 
 _TURNS, _LONG_STEP = 1.0 / 3.0, 0.1  # share of turns and mean step over the range of mixed rows: 2/3, 1/3 by chance
+_OF_DIFFERENCES = 0.6745 * 20.0**0.5  # median of third differences of noise, over its standard deviation
+_SCATTER = 4.2  # three relative standard errors of a deviation found by such differences, over 1/sqrt(points)
 _CONTROLS, _LOADS = ("separation", "remote", "piezo"), ("force", "pressure")
 
 
@@ -35,7 +38,6 @@ class MeasuredCurve(NamedTuple):
     """Standard deviation of each load [N or Pa]; None where it is not known."""
     origin: str
     """The file or argument it is from."""
-    file: Path | None
     stiffness: float | None = None
     """Spring constant of the cantilever that the file tells [N/m]."""
     about: str = ""
@@ -62,6 +64,21 @@ class MeasuredCurve(NamedTuple):
     def weight(self) -> Floats:
         """The divisor of deviations: the error of each load, or the largest load."""
         return np.full_like(self.load, np.abs(self.load).max()) if self.error is None else self.error
+
+    @property
+    def noise(self) -> float:
+        """The standard deviation of the noise of the load [N or Pa], by third differences."""
+        return float(np.median(np.abs(np.diff(self.load, 3)))) / _OF_DIFFERENCES
+
+    def relative_rms(self, deviations: Floats) -> float:
+        """Return the root mean square of the deviations, without those from priors, over the largest load."""
+        loads = deviations[: self.load.size] * self.weight
+        return float(np.sqrt(np.mean(np.square(loads))) / self.largest)
+
+    def has_less_noise(self, deviations: Floats) -> bool:
+        """Return whether deviations are larger than the scatter of neighbours, by third differences of the load."""
+        most = (1.0 + _SCATTER / np.sqrt(self.load.size)) * self.noise
+        return bool(self.relative_rms(deviations) * self.largest > most)
 
     def is_mixed(self) -> bool:
         """Return whether the control goes to and fro from row to row, by much more than a sensor's noise."""
@@ -94,8 +111,8 @@ def read_measured(measured: "str | Path | pd.DataFrame | xr.Dataset | Columns", 
             raise StoreError(f"{columns.origin}: {name} is {same} in every row; a curve {wanted} is needed")
     error = numbers.get(f"{load}_error")
     control, values = ("remote", -numbers[given]) if given == "piezo" else (given, numbers[given])
-    stiffness, about = columns.stiffness, columns.about
-    return MeasuredCurve(control, values, load, numbers[load], error, columns.origin, columns.file, stiffness, about)
+    origin, stiffness, about = columns.origin, columns.stiffness, columns.about
+    return MeasuredCurve(control, values, load, numbers[load], error, origin, stiffness, about)
 
 
 def _one_of(columns: Columns, names: tuple[str, ...]) -> str:

@@ -12,7 +12,7 @@ from roughmdr.aggregate.under_machine import separations_of
 from roughmdr.batch.paths import machine_path
 from roughmdr.batch.realization import simulate_realization
 from roughmdr.errors import OutOfRange, RoughmdrError, SceneError, StoreError
-from roughmdr.expected import Changes, ForceRule, Slopes, expected_force, expected_slopes
+from roughmdr.expected import Changes, Force, ForceRule, Slopes, expected_force, expected_slopes
 from roughmdr.fitting.correlation import correlation_of_noise
 from roughmdr.fitting.measured import MeasuredCurve
 from roughmdr.fitting.parameters import MACHINE, OF_THE_CURVE, OFFSET, Known, Parameter, baselines, free_parameters
@@ -24,40 +24,24 @@ from roughmdr.scene.keys import set_key
 from roughmdr.schema.toml_text import parse_toml
 
 
-class Load(NamedTuple):
-    """The load of the law at the steps of a control."""
-
-    load: Floats
-    """[N or Pa]"""
-    error: float
-    """Relative error of the law."""
-    changes: Changes
-    """Where asperities of one height make and lose contact; not known of a mean law on a machine."""
-    rule: ForceRule | None = None
-    """The rule over shape parameters by which it was found, where there is one."""
-
-
 class Point(NamedTuple):
     """The law with certain parameters."""
 
     x: Floats
     deviations: Floats
     """Law minus measurement, weighted; inf where the law cannot be computed."""
-    error: float
-    """Relative error of the law."""
-    jumps: tuple[int, ...]
-    """The steps after which the contact is made or lost."""
-    control: Floats
-    """The control [m] at each of these jumps."""
-    load: Floats
-    """[N or Pa]; empty where the law cannot be computed."""
-    rule: ForceRule | None = None
-    """The rule over shape parameters by which the law was found, where there is one."""
+    law: Force
+    """Empty where it cannot be computed."""
+
+    @property
+    def jumps(self) -> tuple[int, ...]:
+        """The steps after which the contact is made or lost."""
+        return tuple(self.law.changes.step.tolist())
 
 
 LEAST_NOISE = 1e-12  # least noise over the largest load: of a curve without any, that of rounding
 _NOWHERE = Changes(np.empty(0, dtype=np.int64), np.empty(0))
-_NONE = Point(np.empty(0), np.empty(0), 0.0, (), np.empty(0), np.empty(0))
+_NONE = Point(np.full(1, np.nan), np.empty(0), Force(np.empty(0), 0.0, _NOWHERE, None))
 
 
 class Model:
@@ -89,7 +73,7 @@ class Model:
         self.jumps = scene.asperities.equal_heights and self.adheres
         self._path = LoadingPath.along(curve.values, unload=False, adhesive=scene.work > 0.0)
         self.borne: Floats | None = None
-        """Load that the spring of a machine bears, where it is not that of the law."""
+        """Load that the spring of a machine bears where it is given; None where it is that of the law."""
         self._rule: ForceRule | None = None
         self.near: Spring | None = None
         """How the load on a machine changes near the last parameters whose slopes were found, where it does not jump.
@@ -104,11 +88,6 @@ class Model:
         self.evaluations = 0
         self._last, self._read = _NONE, (np.empty(0), scene)
         self.last_error: RoughmdrError = OutOfRange("the expected law is not finite")
-
-    @property
-    def exact(self) -> bool:
-        """Whether the spring of a machine bears the load of the law, not one that is given."""
-        return self.borne is None
 
     def along(self, curve: MeasuredCurve) -> "Model":
         """Return the model of another curve, with its own spring constant where that of this curve is the machine's."""
@@ -144,13 +123,13 @@ class Model:
             raise OutOfRange("the expected law is not finite")
         return law
 
-    def load(self, x: Floats, values: Floats) -> Load:
-        """Return the load of the law along a control; RoughmdrError where there is no law."""
-        if self.exact and self.near is not None and values is self.curve.values:
+    def force(self, x: Floats, values: Floats) -> Force:
+        """Return the force, or pressure, of the law along a control; RoughmdrError where there is no law."""
+        if self.borne is None and self.near is not None and values is self.curve.values:
             first = self._borne_by(x, self.near.load, None)
-            load = self.near.found(first.load, lambda load: self._borne_by(x, load, first.rule).load)
+            load = self.near.found(first.force, lambda load: self._borne_by(x, load, first.rule).force)
             if load is not None:
-                return first._replace(load=load)
+                return first._replace(force=load)
         self.evaluations += 1
         scene = self.scene(x)
         path, jumps = self._path_in(scene, x, values), list[Jump]()
@@ -160,11 +139,11 @@ class Model:
             path = LoadingPath.along(separation, unload=False, adhesive=path.adhesive)
         if not (self._is_plain and isinstance(path, LoadingPath)):
             law = simulate_realization(scene, path, 0, [self.curve.quantity], "expected")
-            return Load(law.variables[self.curve.quantity], law.numerical_error, _NOWHERE)
+            return Force(law.variables[self.curve.quantity], law.numerical_error, _NOWHERE, None)
         own = scene.asperities, path, scene.effective_modulus, scene.adhesion_model
-        force, error, changes, rule = expected_force(*own, self._rule)
-        changes = changes._replace(control=_control_of(changes, jumps) - self._offset(x))
-        return Load(force / self._area(scene), error, changes, rule)
+        found = expected_force(*own, self._rule)
+        changes = found.changes._replace(control=_control_of(found.changes, jumps) - self._offset(x))
+        return found._replace(force=found.force / self._area(scene), changes=changes)
 
     def slopes(self, x: Floats, rule: ForceRule | None) -> Slopes | None:
         """Return the derivatives of the force at the separations that the law has; None where other numbers matter."""
@@ -182,21 +161,20 @@ class Model:
         self.evaluations += 1
         return Slopes(*(each / self._area(scene) for each in found))
 
-    def _borne_by(self, x: Floats, load: Floats, rule: ForceRule | None) -> Load:
-        """Return the load of the law where the spring of the machine bears another."""
+    def _borne_by(self, x: Floats, load: Floats, rule: ForceRule | None) -> Force:
+        """Return the law where the spring of the machine bears another."""
         with self.held(load=load, rule=rule):
-            return self.load(x, self.curve.values)
+            return self.force(x, self.curve.values)
 
     def _path_in(self, scene: Scene, x: Floats, values: Floats) -> LoadingPath | MachinePath:
         """Return the path of the flat or of its machine in the scene."""
-        if self.curve.control == "separation" and values is self.curve.values:
+        if self.curve.control == "separation":  # along the measured steps alone
             return self._path.relative_to(-self._offset(x))
         steps = values + self._offset(x)
-        if self.curve.control == "remote" and self.exact:
+        if self.borne is None:
             return machine_path(scene, steps)
         borne = self.curve.load - self.baseline(x) if self.borne is self.curve.load else self.borne
-        stretch = 0.0 if borne is None else self.stretch(scene, borne)
-        return LoadingPath.along(steps + stretch, unload=False, adhesive=scene.work > 0.0)
+        return LoadingPath.along(steps + self.stretch(scene, borne), unload=False, adhesive=scene.work > 0.0)
 
     @contextmanager
     def held(self, *, load: Floats | None = None, rule: ForceRule | None = None) -> Iterator[None]:
@@ -245,15 +223,15 @@ class Model:
         far = np.full(self.curve.load.size + len(self._from_priors(x)), np.inf)
         nothing = _NONE._replace(x=x, deviations=far)
         try:
-            load, error, changes, rule = self.load(x, self.curve.values)
+            law = self.force(x, self.curve.values)
         except RoughmdrError as failure:
             self.last_error = failure
             return nothing
-        measured = (load + self.baseline(x) - self.curve.load) / self.curve.weight
+        measured = (law.force + self.baseline(x) - self.curve.load) / self.curve.weight
         found = np.append(measured, self._from_priors(x))
         if not np.isfinite(found).all():
             return nothing
-        return Point(x, found, error, tuple(changes.step.tolist()), changes.control, load, rule)
+        return Point(x, found, law)
 
     def _from_priors(self, x: Floats) -> Floats:
         """Return the deviations from what is known of the parameters otherwise, as if it had been measured."""

@@ -37,17 +37,16 @@ class Posterior(NamedTuple):
     """Number of independent draws that would tell as much."""
     long_enough: bool
     """Whether the chains are long enough to tell this."""
-    with_law: bool
-    """Whether the error of the law is in the likelihood."""
 
 
 def posterior_of(model: Model, found: Found, known: Uncertainty) -> Posterior:
     """Return draws around the parameters of least squares; RoughmdrError without the package emcee."""
     emcee, seed = check_package(), model.start.seed
     rng, noise = np.random.default_rng(seed), np.zeros(int(model.curve.error is None))
+    least = float(np.max(np.abs(model.curve.load / model.curve.weight))) * LEAST_NOISE
     if noise.size:
-        noise += np.log(max(float(np.sqrt(np.mean(np.square(found.residuals)))), _least_noise(model)))
-    density, begin = _density(model, found, known), np.append(found.x, noise)
+        noise += np.log(max(float(np.sqrt(np.mean(np.square(found.residuals)))), least))
+    density, begin = _density(model, found, known, least), np.append(found.x, noise)
     count = max(_WALKERS * begin.size, _FEWEST)
     of_noise = rng.standard_normal((count, noise.size)) / np.sqrt(2.0 * found.points)
     starts = np.hstack([_starts(model, found, known, rng, count), noise + np.abs(of_noise)])
@@ -67,7 +66,7 @@ def posterior_of(model: Model, found: Found, known: Uncertainty) -> Posterior:
     burnt, thin = min(int(_BURNT * time), chains.iteration // 2), max(int(0.5 * time), 1)
     draws = np.swapaxes(chains.get_chain(discard=burnt, thin=thin), 0, 1)[:, :, : found.x.size]
     independent = count * (chains.iteration - burnt) / time
-    return Posterior(draws, independent, chains.iteration > _LONG * time, known.error_of_law is not None)
+    return Posterior(draws, independent, chains.iteration > _LONG * time)
 
 
 def _starts(model: Model, found: Found, known: Uncertainty, rng: np.random.Generator, count: int) -> Floats:
@@ -83,21 +82,23 @@ def _starts(model: Model, found: Found, known: Uncertainty, rng: np.random.Gener
     return np.asarray(found.x + (sign * part)[:, None] * ahead)
 
 
-def _density(model: Model, found: Found, known: Uncertainty) -> Callable[[Floats], float]:
-    """Return the logarithm of the density of the posterior but for a constant, of x and the logarithm of the noise."""
+def _density(model: Model, found: Found, known: Uncertainty, least: float) -> Callable[[Floats], float]:
+    """Return the logarithm of the density of the posterior but for a constant, of x and the logarithm of the noise,
+    whose ``least`` is in units of the deviations.
+    """
     (low, high), points, count, rho = model.bounds, found.points, found.x.size, known.noise.rho
 
     def white(each: Floats) -> Floats:
         return np.append(each[0], (each[1:] - rho * each[:-1]) / np.sqrt(1.0 - rho * rho))
 
-    least, law = np.log(_least_noise(model)), known.error_of_law
+    law, lowest = known.error_of_law, np.log(least)
     v = white(np.zeros(points) if law is None else law / _TWO_SIDED)
     size = float(v @ v)
 
     def density(at: Floats) -> float:
         x, noise = at[:count], float(at[count:].sum())  # 0 where it is stated: deviations are in its units
         deviations = model.deviations(x) if ((low <= x) & (x <= high)).all() else np.full(points, np.inf)
-        if (at.size > count and noise < least) or not np.isfinite(deviations).all():
+        if (at.size > count and noise < lowest) or not np.isfinite(deviations).all():
             return -np.inf
         r, others = white(deviations[:points]), deviations[points:] / (model.noise or 1.0)
         variance = np.exp(2.0 * noise)
@@ -107,11 +108,6 @@ def _density(model: Model, found: Found, known: Uncertainty) -> Callable[[Floats
         return -points * noise - 0.5 * float(np.log1p(size / variance) + squares)
 
     return density
-
-
-def _least_noise(model: Model) -> float:
-    """Return the least noise that is sought, in units of the deviations."""
-    return float(np.max(np.abs(model.curve.load / model.curve.weight))) * LEAST_NOISE
 
 
 def check_package() -> Any:

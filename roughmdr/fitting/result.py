@@ -1,87 +1,76 @@
 """The result of a fit: parameters with intervals, their covariance, the measured and the fitted curve."""
 
+import time
+
 import numpy as np
+from numpy.typing import ArrayLike
 
 from roughmdr.fitting.doubts import doubts
 from roughmdr.fitting.model import Model
 from roughmdr.fitting.parameters import Parameter
-from roughmdr.fitting.posterior import Posterior
-from roughmdr.fitting.residuals import relative_rms
+from roughmdr.fitting.posterior import posterior_of
 from roughmdr.fitting.search import Fitted, Found
-from roughmdr.fitting.uncertainty import Uncertainty
+from roughmdr.fitting.uncertainty import Uncertainty, correlation_of, uncertainty
 from roughmdr.loading.path import labelled_branches
-from roughmdr.numerics.arguments import Floats
 from roughmdr.result.trust import trust_lines
 from roughmdr.schema.units import format_quantity, spelled_in_results
 from roughmdr.storage.labelled import Array, Labelled
 from roughmdr.storage.result_file import FIT, provenance
 
-_POINT, _PARAMETER = ("point",), ("parameter",)
+_POINT, _PARAMETER, _PAIR = ("point",), ("parameter",), ("parameter", "parameter_2")
 _REFERENCES = (
     "Mueller and Stadtmueller (1987), Annals of Statistics 15, 610: uneven noise by the residuals of neighbours; Bell "
     "and McCaffrey (2002), Survey Methodology 28, 169: its degrees of freedom"
 )
 _CHAINS = "Foreman-Mackey et al. (2013), Publ. Astron. Soc. Pacific 125, 306: chains of the posterior (emcee)"
+_COVARIED = (
+    "of the natural logarithm of a parameter where parameter_scale is 0, else of the parameter over its parameter_scale"
+)
 _NAMES = {"force": "force", "pressure": "pressure, force over nominal area"}
 _CONSTANT = "spring constant that the file of the curve tells"
 _CONTROLS = {"separation": "separation", "remote": "position of the far end of the spring"}
 
 
-def assemble(
-    fitted: Fitted, known: Uncertainty, seconds: float, command: str, posterior: Posterior | None = None
-) -> Labelled:
-    """Return the result of a fit, as it is stored."""
-    model, found, compared, undecided = fitted
+def assembled(command: str, fit: Fitted, *, posterior: bool = False) -> Labelled:
+    """Return the result of a search with its uncertainty, and draws from the posterior where they are asked for."""
+    started, (model, found, compared, undecided) = time.perf_counter(), fit
+    known = uncertainty(model, found)
+    draws = posterior_of(model, found, known) if posterior else None
+    seconds = model.seconds + time.perf_counter() - started
     law, scene, curve = model.law(found.x), model.fitted(found.x), model.curve
     variables: dict[str, Array] = {}
     for i, parameter in enumerate(model.parameters):
         variables |= _of_parameter(parameter, i, found, known)
-        if posterior is not None:
-            variables[f"{parameter.name}_posterior"] = _draws(parameter, posterior.x[:, :, i])
+        if draws is not None:
+            values, unit = np.vectorize(parameter.value)(draws.x[:, :, i]), spelled_in_results(parameter.unit)
+            drawn = f"draws of {parameter.key} from the posterior"
+            variables[f"{parameter.name}_posterior"] = _array(values, unit, drawn, ("chain", "draw"))  # as ArviZ
+    for name, matrix in (("covariance", known.covariance), ("correlation", correlation_of(known.influence))):
+        variables[name] = _array(matrix, "1", f"{name} of the numbers that were fitted", _PAIR)
+    variables["covariance"].attrs["comment"] = _COVARIED
+    keys, scales = ([getattr(each, name) for each in model.parameters] for name in ("key", "scale"))
+    scaled = "scale of a fitted number in SI, 0 where its logarithm was fitted"
+    rms, about = curve.relative_rms(found.deviations), "root mean square of the residual over the largest load"
     variables |= {
-        "covariance": Array(
-            ("parameter", "parameter_2"),
-            known.covariance,
-            {
-                "long_name": "covariance of the numbers that were fitted",
-                "comment": "of the natural logarithm of a parameter where parameter_scale is 0, else of the parameter "
-                "over its parameter_scale",
-                "units": "1",
-            },
-        ),
-        "correlation": Array(
-            ("parameter", "parameter_2"),
-            known.correlation,
-            {"long_name": "correlation of the numbers that were fitted", "units": "1"},
-        ),
-        "parameter_scale": Array(
-            _PARAMETER,
-            np.array([parameter.scale for parameter in model.parameters]),
-            {"long_name": "scale of a fitted number in SI, 0 where its logarithm was fitted"},
-        ),
+        "parameter_scale": _array(scales, "", scaled, _PARAMETER),
         **_of_curve(model, law.variables[curve.quantity] + model.baseline(found.x)),
-        "residual_rms": _number(
-            relative_rms(curve, found.deviations),
-            "1",
-            "root mean square of the residual over the largest load",
-        ),
-        **({} if curve.stiffness is None else {"spring_constant": _number(curve.stiffness, "N m-1", _CONSTANT)}),
-        "evaluation_count": _number(model.evaluations, "1", "number of evaluations of the expected law"),
-        "run_time": _number(seconds, "s", "time spent on the fit"),
+        "residual_rms": _array(rms, "1", about),
+        **({} if curve.stiffness is None else {"spring_constant": _array(curve.stiffness, "N m-1", _CONSTANT)}),
+        "evaluation_count": _array(float(model.evaluations), "1", "number of evaluations of the expected law"),
+        "run_time": _array(seconds, "s", "time spent on the fit"),
         **{name: each for name, each in compared.items() if "units" in each.attrs},
     }
-    keys = np.array([parameter.key for parameter in model.parameters])
     coordinates = {
-        curve.control: Array(_POINT, curve.values, {"units": "m", "long_name": f"measured {_CONTROLS[curve.control]}"}),
+        curve.control: _array(curve.values, "m", f"measured {_CONTROLS[curve.control]}", _POINT),
         "branch": labelled_branches(curve.values)._replace(dims=_POINT),
-        "parameter_name": Array(_PARAMETER, keys, {"long_name": "key of the parameter in the scene"}),
-        "parameter_2_name": Array(("parameter_2",), keys, {"long_name": "key of the parameter in the scene"}),
+        "parameter_name": _array(keys, "", "key of the parameter in the scene", _PARAMETER),
+        "parameter_2_name": _array(keys, "", "key of the parameter in the scene", _PAIR[1:]),
         **{name: each for name, each in compared.items() if "units" not in each.attrs},
     }
     warnings = [*undecided, *doubts(model, found, known), *law.warnings]
     if any(stage.replaces_contacts for stage in scene.stages) and law.yielding()["plastic_contact_fraction"] == 0.0:
         warnings.append("no contact of the fitted law yields: begin the search with a lower strength")
-    if posterior is not None and not posterior.long_enough:
+    if draws is not None and not draws.long_enough:
         warnings.append("the chains are too short to tell the posterior well: free less, or give priors")
     interaction = None if scene.interaction is None else scene.interaction.model
     attrs = {
@@ -93,9 +82,9 @@ def assemble(
         "intervals": _intervals(model, known),
         "trust": dict(trust_lines(law.model_error.named, interaction=interaction))["trust"],
     }
-    if posterior is not None:
-        law_error = "with" if posterior.with_law else "without"
-        attrs["posterior"] = f"about {posterior.independent:.0f} independent draws, {law_error} the error of the law"
+    if draws is not None:
+        law_error = "without" if known.error_of_law is None else "with"
+        attrs["posterior"] = f"about {draws.independent:.0f} independent draws, {law_error} the error of the law"
         attrs["references"] += f"; {_CHAINS}"
     if warnings:
         attrs["warnings"] = "\n".join(warnings)
@@ -118,7 +107,7 @@ def _intervals(model: Model, known: Uncertainty) -> str:
 
 def _of_parameter(parameter: Parameter, i: int, found: Found, known: Uncertainty) -> dict[str, Array]:
     """Return a parameter with its standard error and its interval, limited to the bounds of the search."""
-    x, error = float(found.x[i]), float(known.standard_error[i])
+    x, error = float(found.x[i]), known.deviation_of(np.eye(found.x.size)[i])
     (lower, upper), per_x, key = known.reach[:, i], parameter.per_x(x), parameter.key
     unit = spelled_in_results(parameter.unit)
     numbers = {
@@ -130,15 +119,7 @@ def _of_parameter(parameter: Parameter, i: int, found: Found, known: Uncertainty
     if known.shift is not None:
         about = f"how far the model error of the law may shift the fitted {key}, not in its interval"
         numbers["_model_error"] = per_x * float(known.shift[i]), about
-    return {f"{parameter.name}{end}": _number(value, unit, name) for end, (value, name) in numbers.items()}
-
-
-def _draws(parameter: Parameter, x: Floats) -> Array:
-    """Return draws of a parameter from the posterior, in the dimensions that ArviZ knows."""
-    values, unit = np.vectorize(parameter.value)(x), spelled_in_results(parameter.unit)
-    return Array(
-        ("chain", "draw"), values, {"units": unit, "long_name": f"draws of {parameter.key} from the posterior"}
-    )
+    return {f"{parameter.name}{end}": _array(value, unit, about) for end, (value, about) in numbers.items()}
 
 
 def _of_curve(model: Model, fitted: np.ndarray) -> dict[str, Array]:
@@ -152,8 +133,9 @@ def _of_curve(model: Model, fitted: np.ndarray) -> dict[str, Array]:
     }
     if curve.error is not None:
         columns[f"{curve.quantity}_error"] = curve.error, f"standard deviation of the measured {curve.quantity}"
-    return {key: Array(_POINT, values, {"units": unit, "long_name": text}) for key, (values, text) in columns.items()}
+    return {key: _array(values, unit, about, _POINT) for key, (values, about) in columns.items()}
 
 
-def _number(value: float, unit: str, long_name: str) -> Array:
-    return Array((), np.array(float(value)), {"units": unit, "long_name": long_name})
+def _array(values: ArrayLike, unit: str, long_name: str, dims: tuple[str, ...] = ()) -> Array:
+    """Return an array with its attributes; no unit where that is empty."""
+    return Array(dims, np.asarray(values), ({"units": unit} if unit else {}) | {"long_name": long_name})

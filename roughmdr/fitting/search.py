@@ -3,21 +3,18 @@
 import time
 from collections.abc import Mapping
 from functools import partial
-from typing import TYPE_CHECKING, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
+from roughmdr.fitting.correlation import POOR, is_systematic
 from roughmdr.fitting.jumps import least_squares_between, with_measured_jumps
 from roughmdr.fitting.model import Model
-from roughmdr.fitting.residuals import POOR, is_systematic, relative_rms
 from roughmdr.fitting.slopes import slopes_of
 from roughmdr.numerics.arguments import Floats
 from roughmdr.storage.labelled import Array
 
-if TYPE_CHECKING:
-    from scipy.optimize import OptimizeResult
-
-_FTOL, _XTOL, _GTOL, _MAX_STEPS = 1e-10, 1e-7, 1e-12, 60
+_UNTIL: dict[str, Any] = {"ftol": 1e-10, "xtol": 1e-7, "gtol": 1e-12, "max_nfev": 60}
 _STARTS, _TRIED = 16, 3  # other starts per parameter, and number of them that are followed
 
 
@@ -50,21 +47,18 @@ class Fitted(NamedTuple):
 
 
 def fitted(model: Model) -> Fitted:
-    """Return a model with its parameters of least squares; RoughmdrError where no start has a law."""
-    return Fitted(model, search(model))
-
-
-def search(model: Model) -> Found:
-    """Return the parameters of least squares; RoughmdrError where no start has a law.
+    """Return a model with its parameters of least squares; RoughmdrError where no start has a law.
 
     Priors count once the noise is known: where it is not stated, after a search without them.
     """
+    if not model.parameters:
+        return Fitted(model, _follow(model, model.begin))
     started, found = time.perf_counter(), _from_all_starts(model)
     if model.noise == 0.0 and any(parameter.prior for parameter in model.parameters):
         model.assume_noise_of(found.deviations, found.slopes)
         found = _from_all_starts(model)
     model.seconds += time.perf_counter() - started
-    return found
+    return Fitted(model, found)
 
 
 def _from_all_starts(model: Model) -> Found:
@@ -88,9 +82,9 @@ def _from_all_starts(model: Model) -> Found:
 
 def _search(model: Model) -> Found:
     start = model.begin
-    first = with_measured_jumps(model, start) if model.jumps and model.exact else start
+    first = with_measured_jumps(model, start) if model.jumps and model.borne is None else start
     found = [_follow(model, first)] if np.isfinite(model.deviations(first)).all() else []
-    if not found or is_systematic(found[0].residuals) or relative_rms(model.curve, found[0].deviations) > POOR:
+    if not found or is_systematic(found[0].residuals) or model.curve.relative_rms(found[0].deviations) > POOR:
         starts = np.concatenate([_other_starts(model), start[None]]) if first.any() else _other_starts(model)
         costs = [float(np.sum(np.square(model.deviations(x)))) for x in starts]
         best = [starts[i] for i in np.argsort(costs)[:_TRIED] if np.isfinite(costs[i])]
@@ -108,21 +102,14 @@ def _follow(model: Model, start: Floats) -> Found:
     """Return where least squares lead to from a start; RoughmdrError where that has no law."""
     from scipy.optimize import least_squares
 
-    if not np.isfinite(model.deviations(start)).all():
+    points, deviations = model.curve.load.size, model.deviations(start)
+    if not np.isfinite(deviations).all():
         raise model.last_error
-
-    low, high = model.bounds
-    result: OptimizeResult = least_squares(
-        model.deviations,
-        np.clip(start, low, high),
-        jac=partial(slopes_of, model),
-        bounds=(low, high),
-        ftol=_FTOL,
-        xtol=_XTOL,
-        gtol=_GTOL,
-        max_nfev=_MAX_STEPS,
-    )
-    return Found(result.x, result.fun, result.jac, result.status > 0, model.curve.load.size)
+    if not start.size:
+        return Found(start, deviations, np.empty((points, 0)), True, points)
+    begin, slopes = np.clip(start, *model.bounds), partial(slopes_of, model)
+    result: Any = least_squares(model.deviations, begin, slopes, model.bounds, **_UNTIL)
+    return Found(result.x, result.fun, result.jac, result.status > 0, points)
 
 
 def _other_starts(model: Model) -> Floats:

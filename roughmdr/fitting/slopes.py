@@ -27,16 +27,16 @@ def slopes_of(model: Model, x: Floats) -> Floats:
     On a machine they are taken at the separations that the law has, and its spring yields to them.
     """
     middle = model.point(x)
-    if model.curve.control == "separation" or not (model.exact and middle.load.size):
-        with model.held(load=model.borne, rule=middle.rule):
+    if model.curve.control == "separation" or not (model.borne is None and middle.law.force.size):
+        with model.held(load=model.borne, rule=middle.law.rule):
             told = any(p.key in _TOLD for p in model.parameters)
-            return _at_given(model, middle, model.slopes(x, middle.rule) if told else None)
-    with model.held(load=middle.load, rule=middle.rule):
-        slopes = model.slopes(x, middle.rule)
+            return _at_given(model, middle, model.slopes(x, middle.law.rule) if told else None)
+    with model.held(load=middle.law.force, rule=middle.law.rule):
+        slopes = model.slopes(x, middle.law.rule)
         at_given = _at_given(model, model.point(x), slopes)
         spring = _spring(model, x, slopes)
     model.near = None if model.jumps else spring
-    points = middle.load.size  # rows behind them are from priors
+    points = middle.law.force.size  # rows behind them are from priors
     lines = model.baselines / model.curve.weight[:, None]  # which are beside the law
     return np.vstack([spring.yielded(at_given[:points] - lines) + lines, at_given[points:]])
 
@@ -45,9 +45,9 @@ def yielded(model: Model, x: Floats, change: Floats) -> Floats:
     """Return the change of the load at the measured control that a ``change`` at given separation makes."""
     if model.curve.control == "separation":
         return change
-    middle = model.point(x)
-    with model.held(load=middle.load, rule=middle.rule):
-        return _spring(model, x, model.slopes(x, middle.rule)).yielded(change)
+    law = model.point(x).law
+    with model.held(load=law.force, rule=law.rule):
+        return _spring(model, x, model.slopes(x, law.rule)).yielded(change)
 
 
 def _at_given(model: Model, middle: Point, slopes: Slopes | None) -> Floats:
@@ -100,15 +100,15 @@ def _spring(model: Model, x: Floats, slopes: Slopes | None) -> Spring:
     def slope(steps: NDArray[np.bool_]) -> Floats:
         if slopes is not None:
             return np.where(steps, -slopes.stiffness, 0.0)
-        sides = [model.load(x, model.curve.values + sign * step * steps).load for sign in (1.0, -1.0)]
-        return _difference(model, middle.load, sides, step)
+        sides = [model.force(x, model.curve.values + sign * step * steps).force for sign in (1.0, -1.0)]
+        return _difference(model, middle.law.force, sides, step)
 
-    return Spring.of(model.curve.values, middle.load, float(model.stretch(scene, np.ones(1))[0]), slope)
+    return Spring.of(model.curve.values, middle.law.force, float(model.stretch(scene, np.ones(1))[0]), slope)
 
 
 def _step(middle: Point) -> float:
     """Return the best step of differences, the cube root of the error of the law."""
-    return float(min(max(middle.error, KERNEL_ERROR) ** (1.0 / 3.0), _LONGEST_STEP))
+    return float(min(max(middle.law.error, KERNEL_ERROR) ** (1.0 / 3.0), _LONGEST_STEP))
 
 
 def _difference(model: Model, here: Floats, sides: list[Floats], step: float) -> Floats:

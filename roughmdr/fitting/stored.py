@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from roughmdr.errors import RoughmdrError, StoreError, level_outside
-from roughmdr.fitting.words import COMPARED, curve_names, is_open
+from roughmdr.fitting.words import COMPARED, curve_names, is_open, load_of
 from roughmdr.storage.labelled import Array, Labelled
 from roughmdr.storage.reading import read_arrays
 from roughmdr.storage.result_file import FIT, is_fit
@@ -61,7 +61,7 @@ def as_fit(data: Labelled, file: Path | None = None) -> Labelled:
     """
     faults = (fault for each in _one_by_one(data) for check in (_arrays, _values) for fault in check(each))
     refuse(chain(_attributes(data), faults), "fit", "fit", file)
-    return with_units(data, _forms(data) | _optional_forms(data))
+    return with_units(data, _forms(data))
 
 
 def _attributes(data: Labelled) -> Iterator[str]:
@@ -98,8 +98,8 @@ def _of_curve(arrays: dict[str, Array], curve: np.intp, points: int) -> dict[str
 
 def _arrays(data: Labelled) -> Iterator[str]:
     """Find arrays that are missing, or of the wrong type, unit or dimensions."""
-    required = _forms(data)
-    for name, form in (required | _optional_forms(data)).items():
+    required = _forms(data, required=True)
+    for name, form in _forms(data).items():
         coordinate = form.kind == "text" or name in _CONTROLS
         holder = data.coordinates if coordinate else data.variables
         if name in holder:
@@ -115,7 +115,7 @@ def _values(data: Labelled) -> Iterator[str]:
     """Find values that no fit has: not finite, or outside their own interval."""
     ends = {name for _, names in _parameters(data) for name in names[1:]}  # infinite where nothing is determined
     ends |= {*COMPARED}  # infinite where there is no fit, and for JKR
-    for name, form in (_forms(data) | _optional_forms(data)).items():
+    for name, form in _forms(data).items():
         array = (data.variables | data.coordinates).get(name)
         if array is not None and form.kind == "f" and name not in ends and not np.isfinite(array.values).all():
             yield f"{name} is not finite"
@@ -138,27 +138,20 @@ def _parameters(data: Labelled) -> Iterator[tuple[str, tuple[str, ...]]]:
         yield str(key), tuple(f"{str(key).replace('.', '_')}{end}" for end in _ENDS)
 
 
-def _forms(data: Labelled) -> dict[str, Form]:
-    """Return the forms of the arrays that a fit must have, by their names."""
+def _forms(data: Labelled, *, required: bool = False) -> dict[str, Form]:
+    """Return the forms of the arrays that a fit can have, or of those alone that it must have, by their names."""
     control = next((name for name in _CONTROLS if name in data.coordinates), "separation")
-    load, point = _load(data), ("point",)
+    load, point = load_of(data), ("point",)
     forms = {control: Form(point, "f", MEASURED[control]), "branch": Form(point, "text", "")}
     forms |= {name: Form(point, "f", MEASURED[load]) for name in (load, f"{load}_fitted", "residual")}
     forms |= {"parameter_name": Form(("parameter",), "text", ""), "parameter_scale": Form(("parameter",), "f", "")}
     forms |= {name: Form((), "f", "1") for name in ("residual_rms", "evaluation_count")}
     forms |= {name: Form((), "f", "") for _, names in _parameters(data) for name in names}
-    return forms | {"run_time": Form((), "f", "s")}
-
-
-def _optional_forms(data: Labelled) -> dict[str, Form]:
-    """Return the forms of the arrays that a fit can have: errors of points and of the model, draws, adhesion models."""
-    errors = {f"{names[0]}_model_error": Form((), "f", "") for _, names in _parameters(data)}
-    compared = {name: Form(("model",), "f", "1") for name in COMPARED}
-    compared |= {name: Form(("model",), "text", "") for name in ("model_name", "model_failure")}
-    compared |= {"spring_constant": Form((), "f", "N m-1")}
-    errors |= {f"{names[0]}_posterior": Form(("chain", "draw"), "f", "") for _, names in _parameters(data)}
-    return errors | compared | {f"{_load(data)}_error": Form(("point",), "f", MEASURED[_load(data)])}
-
-
-def _load(data: Labelled) -> str:
-    return "pressure" if "pressure_fitted" in data.variables else "force"
+    forms |= {"run_time": Form((), "f", "s")}
+    if required:
+        return forms
+    forms |= {f"{name}_model_error": Form((), "f", "") for _, (name, *_) in _parameters(data)}
+    forms |= {f"{name}_posterior": Form(("chain", "draw"), "f", "") for _, (name, *_) in _parameters(data)}
+    forms |= {name: Form(("model",), "f", "1") for name in COMPARED}
+    forms |= {name: Form(("model",), "text", "") for name in ("model_name", "model_failure")}
+    return forms | {"spring_constant": Form((), "f", "N m-1"), f"{load}_error": Form(point, "f", MEASURED[load])}

@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from roughmdr.errors import OutOfRange
 from roughmdr.fitting.correlation import (
+    POOR,
     Correlation,
     by_independent_noise,
     correlated,
@@ -16,7 +17,6 @@ from roughmdr.fitting.correlation import (
 from roughmdr.fitting.measured import MeasuredCurve
 from roughmdr.fitting.model import Model
 from roughmdr.fitting.profile import Edges, certain_edges, farthest, profiled
-from roughmdr.fitting.residuals import POOR, relative_rms
 from roughmdr.fitting.search import Found
 from roughmdr.fitting.slopes import yielded
 from roughmdr.numerics.arguments import Floats
@@ -61,23 +61,13 @@ class Uncertainty(NamedTuple):
         """The covariance of x."""
         return np.asarray(self.influence @ self.influence.T)
 
-    @property
-    def standard_error(self) -> Floats:
-        """The standard error of each x."""
-        return self.deviation_of(np.eye(self.influence.shape[0]))
-
-    @property
-    def correlation(self) -> Floats:
-        """The correlation of x; 0 with a parameter whose error is 0."""
-        return correlation_of(self.influence)
-
-    def deviation_of(self, combination: Floats) -> Floats:
-        """Return the standard error of a combination of x, or of each of several."""
-        return np.asarray(np.linalg.norm(combination @ self.influence, axis=-1))
+    def deviation_of(self, combination: Floats) -> float:
+        """Return the standard error of a combination of x."""
+        return float(np.linalg.norm(combination @ self.influence, axis=-1))
 
 
 def correlation_of(influence: Floats) -> Floats:
-    """Return the correlation of parameters by the influence of each step on them."""
+    """Return the correlation of parameters by the influence of each step on them; 0 with one whose error is 0."""
     error = np.linalg.norm(influence, axis=1, keepdims=True)
     scaled = influence / np.where(error > 0.0, error, 1.0)
     correlation = np.clip(scaled @ scaled.T, -1.0, 1.0)
@@ -146,7 +136,7 @@ def apart_from_the_rest(
 
 def noise_correlation(curve: MeasuredCurve, left: Floats, deviations: Floats) -> Correlation:
     """Return the correlation of the noise, which large deviations are not."""
-    return Correlation() if relative_rms(curve, deviations) > POOR else correlation_of_noise(left, deviations)
+    return Correlation() if curve.relative_rms(deviations) > POOR else correlation_of_noise(left, deviations)
 
 
 def by_noise(

@@ -23,25 +23,29 @@ def describe_fit(fit: Labelled) -> str:
 
 def describe_parameters(fit: Labelled) -> list[str]:
     """Return a line for each parameter, with its standard error and its 95 % interval."""
-    keys = parameter_keys(fit)
-    widest = max(map(len, keys))
-    return [f"{key:<{widest}}  {_with_interval(fit, key.replace('.', '_'))}" for key in keys]
+    names = parameter_names(fit)
+    widest = max(map(len, names))
+    return [f"{key:<{widest}}  {_with_interval(fit, name)}" for key, name in names.items()]
 
 
 def describe_shifts(fit: Labelled) -> str:
     """Return the shifts of the parameters by the error of the law; empty where that is not known."""
-    names = {key: key.replace(".", "_") for key in parameter_keys(fit)}
     shifts = [
         f"{key} by {format_quantity(_number(fit, f'{name}_model_error'), fit.variables[name].attrs['units'])}"
-        for key, name in names.items()
+        for key, name in parameter_names(fit).items()
         if f"{name}_model_error" in fit.variables and not is_open(fit, name)
     ]
     return f"not in the intervals: that of the law may shift {', '.join(shifts)}" if shifts else ""
 
 
-def parameter_keys(fit: Labelled) -> list[str]:
-    """Return the keys of the fitted parameters."""
-    return list(map(str, fit.coordinates["parameter_name"].values))
+def parameter_names(fit: Labelled) -> dict[str, str]:
+    """Return the names of the variables of the fitted parameters by their keys."""
+    return {key: key.replace(".", "_") for key in map(str, fit.coordinates["parameter_name"].values)}
+
+
+def load_of(fit: Labelled) -> str:
+    """Return the quantity that was measured: "force" or "pressure"."""
+    return "pressure" if "pressure_fitted" in fit.variables else "force"
 
 
 def fit_lines(fit: Labelled) -> Iterator[tuple[str, str]]:
@@ -53,14 +57,13 @@ def fit_lines(fit: Labelled) -> Iterator[tuple[str, str]]:
         yield "measured", str(fit.attrs["measured"])
     _, *reasons = str(fit.attrs.get("intervals", "")).split("; ")
     of_many = "median ± median standard error; in parentheses from 5 to 95 % of the curves"
-    if shared := [key for key in parameter_keys(many) if not many.variables[key.replace(".", "_")].dims]:
+    if shared := [key for key, name in parameter_names(many).items() if not many.variables[name].dims]:
         of_many += f"; of {', '.join(shared)}, one for all, 95 %"
     of_one = "; ".join(["± one standard error; in parentheses 95 %", *reasons])
     yield "intervals", of_many if curve_names(many) else of_one
     yield from under("posterior", _posterior_lines(fit))
-    load = "pressure" if "pressure_fitted" in fit.variables else "force"
-    points = fit.variables["residual"].values.size
-    yield "residual", f"{100.0 * _number(fit, 'residual_rms'):.2g} % of the largest {load} (r.m.s. of {points} points)"
+    rms, points = 100.0 * _number(fit, "residual_rms"), fit.variables["residual"].values.size
+    yield "residual", f"{rms:.2g} % of the largest {load_of(fit)} (r.m.s. of {points} points)"
     if shifts := describe_shifts(fit):
         yield "model error", shifts
     if "aicc" in fit.variables:
@@ -75,12 +78,12 @@ def fit_lines(fit: Labelled) -> Iterator[tuple[str, str]]:
 
 def _posterior_lines(fit: Labelled) -> Iterator[str]:
     """Yield the median and the 95 % interval of each parameter by its draws, and how many these are."""
-    arrays = {key: fit.variables.get(f"{key.replace('.', '_')}_posterior") for key in parameter_keys(fit)}
+    arrays = {key: fit.variables.get(f"{name}_posterior") for key, name in parameter_names(fit).items()}
     drawn = {key: array for key, array in arrays.items() if array is not None and array.values.size}
     for key, array in drawn.items():
         low, middle, high = np.quantile(array.values, [0.025, 0.5, 0.975]).tolist()
         digits = _digits(middle, 0.25 * (high - low))
-        unit = str(fit.variables[key.replace(".", "_")].attrs["units"])
+        unit = str(fit.variables[parameter_names(fit)[key]].attrs["units"])
         ends = format_quantity(low, unit, to=high, digits=digits)
         yield f"{key:<{max(map(len, drawn))}}  {format_quantity(middle, unit, digits=digits)} ({ends})"
     if drawn:
@@ -94,7 +97,7 @@ def curve_names(fit: Labelled) -> list[str]:
 
 def typical(fit: Labelled) -> Labelled:
     """Return a fit of many curves as that of one: medians, sums of work, and intervals from 5 to 95 % of the curves."""
-    names = [key.replace(".", "_") for key in parameter_keys(fit)]
+    names = parameter_names(fit).values()
     shares = {f"{name}_{end}": share for name in names for end, share in (("low", 5.0), ("high", 95.0))}
 
     def one(name: str, array: Array) -> Array:
@@ -138,7 +141,7 @@ def _digits(number: float, error: float) -> int:
 
 def is_open(fit: Labelled, name: str) -> bool:
     """Return whether a parameter is not determined: a positive one by a factor of several, another by its scale."""
-    position = [key.replace(".", "_") for key in parameter_keys(fit)].index(name)
+    position = [*parameter_names(fit).values()].index(name)
     scale = float(fit.variables["parameter_scale"].values[position]) or _number(fit, name)
     return _number(fit, f"{name}_standard_error") > scale
 

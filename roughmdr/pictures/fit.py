@@ -1,11 +1,10 @@
 """The picture of a fit: the measured points, the fitted law, and the residuals below."""
 
-from itertools import pairwise
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from roughmdr.fitting.words import describe_parameters, describe_shifts, parameter_keys, typical
+from roughmdr.fitting.words import describe_parameters, describe_shifts, load_of, parameter_names, typical
 from roughmdr.pictures.style import BRANCH_COLOURS, Scale, set_title
 from roughmdr.storage.labelled import Labelled
 
@@ -13,6 +12,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
+_POINTS: dict[str, Any] = {"fmt": "o", "ms": 3.0, "mfc": "none", "elinewidth": 0.6}  # circles that hide no law
 _CONTROLS = {"separation": "measured separation", "remote": "measured position of the far end of the spring"}
 
 
@@ -20,8 +20,8 @@ def draw_fits(fits: Labelled) -> "Figure":
     """Draw how each parameter, and the size of the residuals, are distributed over many curves."""
     from roughmdr.pictures.figure import Figure
 
-    keys = {key: key.replace(".", "_") for key in parameter_keys(fits)} | {"residual over largest load": "residual_rms"}
-    drawn = {key: array for key, name in keys.items() if (array := fits.variables[name]).dims}
+    names = parameter_names(fits) | {"residual over largest load": "residual_rms"}
+    drawn = {key: array for key, name in names.items() if (array := fits.variables[name]).dims}
     figure = Figure(figsize=(6.4, 2.1 * len(drawn)), layout="constrained")
     for ax, (key, array) in zip(figure.subplots(len(drawn), 1, squeeze=False).flat, drawn.items(), strict=True):
         values = array.values[np.isfinite(array.values)]
@@ -33,14 +33,12 @@ def draw_fits(fits: Labelled) -> "Figure":
 
 
 def draw_fit(fit: Labelled) -> "Figure":
-    """Draw the measured points over the fitted law, loading and unloading in their colours, and the residuals below.
+    """Draw the measured points over the fitted law, loading and unloading in their colours, and the residuals below."""
+    from matplotlib import rcParams
 
-    ``fit`` is as ``roughmdr.fitting.fit`` returns or stores it.
-    """
     from roughmdr.pictures.figure import Figure
 
-    control = next(name for name in _CONTROLS if name in fit.coordinates)
-    load = "pressure" if "pressure_fitted" in fit.variables else "force"
+    control, load = next(name for name in _CONTROLS if name in fit.coordinates), load_of(fit)
     figure = Figure(figsize=(6.4, 5.6), layout="constrained")
     law, residual = figure.subplots(2, 1, sharex=True, height_ratios=(3.0, 1.0))
     x = Scale.of(fit.coordinates[control].values, _CONTROLS[control], "m")
@@ -48,7 +46,8 @@ def draw_fit(fit: Labelled) -> "Figure":
     r = Scale.of(fit.variables["residual"].values, "residual", fit.variables[load].attrs["units"])
     error = f"{load}_error"
     _draw_points(law, fit, (control, load, error), (x, y))
-    _draw_fitted(law, fit, (control, f"{load}_fitted"), (x, y))
+    fitted = x(fit.coordinates[control].values), y(fit.variables[f"{load}_fitted"].values)
+    law.plot(*fitted, color=rcParams["text.color"], lw=1.0, label="fitted law")
     _draw_points(residual, fit, (control, "residual", error), (x, r))
     for ax in (law, residual):
         ax.axhline(0.0, color="0.6", lw=0.6, zorder=0)
@@ -65,38 +64,9 @@ def draw_fit(fit: Labelled) -> "Figure":
 def _draw_points(ax: "Axes", fit: Labelled, names: tuple[str, str, str], scales: tuple[Scale, Scale]) -> None:
     """Draw points by branch, with bars where their errors are known."""
     (control, name, error), (x, y) = names, scales
-    branch = fit.coordinates["branch"].values
-    for each, colour in BRANCH_COLOURS.items():
-        at = branch == each
+    for branch, colour in BRANCH_COLOURS.items():
+        at = fit.coordinates["branch"].values == branch
         if at.any():
             bars = y(fit.variables[error].values[at]) if error in fit.variables else None
-            ax.errorbar(
-                x(fit.coordinates[control].values[at]),
-                y(fit.variables[name].values[at]),
-                bars,
-                fmt="o",
-                ms=3.0,
-                mfc="none",
-                color=colour,
-                elinewidth=0.6,
-                label=f"measured, {each}",
-            )
-
-
-def _draw_fitted(ax: "Axes", fit: Labelled, names: tuple[str, str], scales: tuple[Scale, Scale]) -> None:
-    """Draw the fitted law, each loading and unloading from where the one before ended."""
-    from matplotlib import rcParams
-
-    (control, name), (x, y) = names, scales
-    branch, steps, load = fit.coordinates["branch"].values, fit.coordinates[control].values, fit.variables[name].values
-    turns = np.flatnonzero(branch[1:] != branch[:-1]) + 1
-    ends = [0, *turns.tolist(), branch.size]
-    for number, (first, last) in enumerate(pairwise(ends)):
-        along = slice(max(first - 1, 0), last)
-        ax.plot(
-            x(steps[along]),
-            y(load[along]),
-            color=rcParams["text.color"],
-            lw=1.0,
-            label=None if number else "fitted law",
-        )
+            points = x(fit.coordinates[control].values[at]), y(fit.variables[name].values[at]), bars
+            ax.errorbar(*points, **_POINTS, color=colour, label=f"measured, {branch}")

@@ -179,7 +179,7 @@ def test_files_of_instruments_are_left_to_afmformats(tmp_path: Path) -> None:
     assert len(load_data(path)) == 1
     curve = read_measured(path, 1)
     check(curve, "remote", BASE, FORCE)
-    assert (curve.stiffness, curve.file) == (STIFFNESS, path)
+    assert (curve.stiffness, curve.origin) == (STIFFNESS, str(path))
     (tmp_path / "other.bin").write_bytes(b"PK\0\0")
     with pytest.raises(StoreError, match="not a text file, and in no format that afmformats reads: "):
         read_measured(tmp_path / "other.bin", 1)

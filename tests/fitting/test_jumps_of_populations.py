@@ -66,7 +66,7 @@ def test_a_cantilever_jumps_where_one_asperity_does(stiffness: float) -> None:
     remote = np.concatenate([down := np.linspace(-2.0 * fold, -2e-6, 60), down[::-1]])
     curve = read_measured(pd.DataFrame({"remote": remote, "force": -remote}), 3)
     model = Model(*scene_to_fit(TIP.scene(path={"machine_stiffness": stiffness}), {}, curve, FREE), FREE)
-    assert model.point(np.zeros(3)).control == pytest.approx([0.0, -fold], abs=1e-10 * TIP.scale)
+    assert model.point(np.zeros(3)).law.changes.control == pytest.approx([0.0, -fold], abs=1e-10 * TIP.scale)
 
 
 @pytest.mark.large

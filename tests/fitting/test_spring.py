@@ -66,7 +66,7 @@ def test_loads_near_known_ones_are_those_of_the_machine() -> None:
     slopes_of(model, x)
     assert model.near is not None
     before = model.evaluations
-    near, exact = (each.point_at(x + 0.02).load for each in (model, apart))
+    near, exact = (each.point_at(x + 0.02).law.force for each in (model, apart))
     assert model.evaluations - before > 1  # by iteration, each time at given separations
     assert near == pytest.approx(exact, abs=1e-10 * np.abs(exact).max())
 
