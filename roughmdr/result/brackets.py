@@ -7,14 +7,15 @@ from roughmdr.numerics.arguments import Floats, Ints
 from roughmdr.result.between import AT_A_PLACE, REACH, off_line
 from roughmdr.result.curves import Branch
 
-LOWER, UPPER, FRACTION = range(3)
-"""Parts of a bracket: its two steps, and the position of the value from the first (0) to the second (1)."""
 
+def find_brackets(curve: Floats, values: Floats, *, branch: Branch) -> tuple[Floats, ...]:
+    """Return the brackets in which curves [..., step] first reach values [value]; NaN where they never do.
 
-def find_brackets(curve: Floats, values: Floats, *, branch: Branch) -> Floats:
-    """Return where curves [..., step] first reach values [value]: [..., value, part]; NaN where they never do."""
+    A bracket is two steps, and the position of the value from the first (0) to the second (1): each [..., value].
+    """
     before, filled, usable = _joined(curve, branch)
-    return np.stack([_first(filled, value, before, usable) for value in values], axis=-2)
+    brackets = (_first(filled, value, before, usable) for value in values)
+    return tuple(np.stack(part, axis=-1) for part in zip(*brackets, strict=True))
 
 
 def _joined(y: Floats, branch: Branch) -> tuple[Ints, Floats, NDArray[np.bool_]]:
@@ -31,9 +32,9 @@ def _joined(y: Floats, branch: Branch) -> tuple[Ints, Floats, NDArray[np.bool_]]
 
 
 def _first(y: Floats, value: float, before: Ints, usable: NDArray[np.bool_]) -> Floats:
-    """Return the first bracket of a value on each curve: [..., part]."""
+    """Return the first bracket of a value on each curve: [part, ...]."""
     if y.shape[-1] < 2:
-        return np.full((*y.shape[:-1], 3), np.nan)
+        return np.full((3, *y.shape[:-1]), np.nan)
     below, above = y <= value, y >= value
     crossed = (below[..., :-1] & above[..., 1:]) | (above[..., :-1] & below[..., 1:])
     crossed &= usable
@@ -44,21 +45,22 @@ def _first(y: Floats, value: float, before: Ints, usable: NDArray[np.bool_]) -> 
     rise = second - first
     with np.errstate(divide="ignore", invalid="ignore"):
         fraction = np.where(rise == 0.0, 0.0, (value - first) / rise)
-    return np.where(reached[..., None], np.stack([lower, at + 1, fraction], axis=-1), np.nan)
+    return np.where(reached, np.stack([lower, at + 1, fraction]), np.nan)
 
 
 def interpolate(
-    curve: Floats, reached: Floats, path: Floats, brackets: Floats, *, branch: Branch, in_jumps: bool
+    curve: Floats, reached: Floats, path: Floats, *bracket: Floats, branch: Branch, in_jumps: bool
 ) -> tuple[Floats, Floats, Floats]:
-    """Return curves at brackets [..., value, part] of curves that are ``reached``, their errors and changes there.
+    """Return curves at a bracket of curves that are ``reached`` for each value, their errors and changes there.
 
-    Curves and the ``path``, the controlled quantity, are [..., step]; the returned arrays [..., value]. A bracket gives
-    a line, the curve over the reached one. The error is the deviation of the curve from that line between the steps;
-    for a curve that changes ``in_jumps`` only, and where too few steps are known, the difference to the farther step.
+    Curves and the ``path``, the controlled quantity, are [..., step]; the bracket and the returned arrays [..., value].
+    A bracket gives a line, the curve over the reached one. The error is the deviation of the curve from that line
+    between the steps; for a curve that changes ``in_jumps`` only, and where too few steps are known, the difference to
+    the farther step.
     """
-    known = ~np.isnan(brackets[..., FRACTION])
-    lower, upper = (np.where(known, brackets[..., part], 0.0).astype(np.int64) for part in (LOWER, UPPER))
-    fraction = brackets[..., FRACTION]
+    fraction = bracket[2]
+    known = ~np.isnan(fraction)
+    lower, upper = (np.where(known, step, 0.0).astype(np.int64) for step in bracket[:2])
     first, second = (_at(curve, step[..., None])[..., 0] for step in (lower, upper))
     rise = second - first
     with np.errstate(invalid="ignore", divide="ignore"):

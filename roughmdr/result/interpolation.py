@@ -13,13 +13,12 @@ from roughmdr.result.curves import (
     PER_AREA,
     Branch,
     Read,
-    alone,
+    apply,
     curve,
     is_reference,
     result_of,
     separation_of,
     stored_curves,
-    whole,
 )
 from roughmdr.result.grid_errors import grid_errors
 from roughmdr.result.model_errors import LOADS, errors_there, lowest_so_far
@@ -30,7 +29,6 @@ from roughmdr.variables import LAW_VARIABLES, MODEL_ERROR, SEPARATION
 if TYPE_CHECKING:
     import xarray as xr
 
-_BRACKET = "_part"
 _IN_JUMPS = ("contact_count", "dissipated_energy", "machine_dissipated_energy")
 """Curves that are constant between jumps."""
 
@@ -48,38 +46,22 @@ def at_value(dataset: "xr.Dataset", name: str, values: ArrayLike, branch: str) -
         raise OutOfRange(f"{name} is {np.max(wanted):g}; it must be at most 1")
     on = Branch(result, branch)
     own, beside = name.removeprefix("reference_"), " with reference=True" if is_reference(name) else ""
-    reached = alone(curve(result, name, f"at_{own}{beside} needs"))
+    reached = curve(result, name, f"at_{own}{beside} needs")
     path = curve(result, result.control, "ds.roughmdr needs")
     points = xr.DataArray(np.atleast_1d(wanted), dims=name)
-    brackets = xr.apply_ufunc(
-        find_brackets,
-        reached,
-        points,
-        kwargs={"branch": on},
-        input_core_dims=[["step"], [name]],
-        output_core_dims=[[name, _BRACKET]],
-        keep_attrs=False,
-        dask="parallelized",
-        output_dtypes=[np.float64],
-        dask_gufunc_kwargs={"output_sizes": {_BRACKET: 3}},
-    )
+    brackets = apply(find_brackets, reached, points, core=[["step"], [name]], out=[[name]] * 3, branch=on)
     found, read = dict[str, xr.DataArray](), dict[str, Read]()
     curves = {name: reached} | _curves(result, name)
     if PLASTIC in result.variables:
-        curves[LOADS] = lowest_so_far(alone(separation_of(result)))
+        curves[LOADS] = lowest_so_far(separation_of(result))
     for label, array in curves.items():
-        value, error, rise = xr.apply_ufunc(
+        value, error, rise = apply(
             interpolate,
-            array,
-            reached,
-            path,
-            brackets,
-            kwargs={"branch": on, "in_jumps": label.removesuffix("_mean") in _IN_JUMPS},
-            input_core_dims=[["step"], ["step"], ["step"], [name, _BRACKET]],
-            output_core_dims=[[name]] * 3,
-            keep_attrs=False,
-            dask="parallelized",
-            output_dtypes=[np.float64] * 3,
+            *(array, reached, path, *brackets),
+            core=[["step"]] * 3 + [[name]] * 3,
+            out=[[name]] * 3,
+            branch=on,
+            in_jumps=label.removesuffix("_mean") in _IN_JUMPS,
         )
         read[label.removesuffix("_mean")] = Read(label, value, rise)
         if label in (name, LOADS):
@@ -100,7 +82,7 @@ def at_value(dataset: "xr.Dataset", name: str, values: ArrayLike, branch: str) -
 def _curves(result: ResultView, name: str) -> "dict[str, xr.DataArray]":
     """Return the separation, all curves, and those that follow from them, but those of ``name`` itself."""
     dataset = result.dataset
-    curves = {each: alone(whole(dataset[each])) for each in stored_curves(result)}
+    curves = {each: curve(result, each, "") for each in stored_curves(result)}
     suffix = "_mean" if result.keeps_statistics else ""
     for derived, total in PER_AREA.items():
         if f"{total}{suffix}" in curves and f"{derived}{suffix}" not in curves and "nominal_area" in dataset:
