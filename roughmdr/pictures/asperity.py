@@ -5,7 +5,7 @@ problems with and without adhesion" (2012).
 """
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Unpack
 
 import numpy as np
 
@@ -13,6 +13,7 @@ from roughmdr.ensemble import Ensemble
 from roughmdr.errors import StoreError
 from roughmdr.numerics.arguments import Floats
 from roughmdr.pictures.one_contact import OneContact
+from roughmdr.pictures.request import Place
 from roughmdr.pictures.snapshot import Snapshot
 from roughmdr.pictures.style import BRANCH_COLOURS, Scale, in_words, set_title
 from roughmdr.result.view import ResultView
@@ -32,13 +33,7 @@ _STRAIGHT = 2  # straight points at each end of a drawn spring
 
 
 def draw_asperity(
-    result: ResultView,
-    file: Path | None = None,
-    *,
-    cell: tuple[int, ...] | None = None,
-    realization: int = 0,
-    step: int | None = None,
-    asperity: int | None = None,
+    result: ResultView, file: Path | None = None, *, asperity: int | None = None, **place: Unpack[Place]
 ) -> "Figure":
     """Draw one asperity of a realisation at a step: profile and surface, MDR profile and springs, and pressure.
 
@@ -46,7 +41,7 @@ def draw_asperity(
     asperities are numbered from the highest down. ``file`` is that of the result, if any. StoreError where it is not in
     contact; others as ``Snapshot.of``.
     """
-    now = Snapshot.of(result, file, cell=cell, realization=realization, step=step, placed=False)
+    now = Snapshot.of(result, file, placed=False, **place)
     force, active, count = now.contacts.force, now.contacts.active, now.ensemble.height.size
     if not active.any():
         raise StoreError(f"no asperity is in contact at {now.place}; give another step")
