@@ -15,7 +15,7 @@ from roughmdr.numerics.arguments import Floats
 from roughmdr.pictures.one_contact import OneContact
 from roughmdr.pictures.request import Place
 from roughmdr.pictures.snapshot import Snapshot
-from roughmdr.pictures.style import BRANCH_COLOURS, Scale, in_words, set_title
+from roughmdr.pictures.style import BRANCH_COLOURS, Scale, in_words, new_figure, set_title
 from roughmdr.result.view import ResultView
 from roughmdr.shapes import SHAPES, Shape
 
@@ -82,9 +82,7 @@ def _shape_of(ensemble: Ensemble, number: int) -> Shape:
 
 def draw_contact(contact: OneContact, force: float, title: str, notes: list[str]) -> "Figure":
     """Draw a contact that bears a force [N], with a title and notes, to which its numbers are added."""
-    from roughmdr.pictures.figure import Figure
-
-    figure = Figure(figsize=_SIZE, layout="constrained")
+    figure = new_figure(*_SIZE)
     profile, row, load = figure.subplots(3, 1, sharex=True)
     length = Scale.of([contact.half_width], "distance from the axis, r or x", "m")
     heights = [_draw_profile(profile, contact, length), _draw_springs(row, contact, length)]

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from roughmdr.errors import StoreError
 from roughmdr.numerics.arguments import Floats, Ints
 from roughmdr.pictures.curves import quantiles
-from roughmdr.pictures.style import BRANCH_COLOURS, colours, set_title
+from roughmdr.pictures.style import BRANCH_COLOURS, colours, new_figure, set_title
 from roughmdr.result.view import ResultView, step_blocks
 from roughmdr.variables import TRAVEL
 
@@ -62,8 +62,6 @@ def draw_convergence(result: ResultView) -> "Figure":
     of the model and the error asked for. More than a few cells are a band with their median. StoreError where the
     result holds no realisations, or too few.
     """
-    from roughmdr.pictures.figure import Figure
-
     if "realization" not in result.sizes:
         raise StoreError(
             "the result holds statistics, not its realisations; run its scene with output.keep = 'curves' to see how "
@@ -76,7 +74,7 @@ def draw_convergence(result: ResultView) -> "Figure":
             "batch.realizations, and batch.estimator = 'sampled'"
         )
     names = list(dict.fromkeys(each.name for each in found))
-    figure = Figure(figsize=(max(5.0 * len(names), 7.0), 5.4), layout="constrained")
+    figure = new_figure(max(5.0 * len(names), 7.0), 5.4)
     axes = figure.subplots(1, len(names), sharey=True, squeeze=False).ravel()
     notes, named, lowest = [], dict[str, Any](), math.inf
     for ax, name in zip(axes, names, strict=True):

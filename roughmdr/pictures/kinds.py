@@ -53,15 +53,11 @@ def _usual(source: Drawable, request: Request) -> str:
     return "sweep" if len(source.result.cells) > MAX_NAMED else "law"
 
 
-def _selected(source: Drawable, request: Request) -> tuple[ResultView, str]:
-    return select(source.result, request.select) if request.select else (source.result, "")
-
-
 def _law(source: Drawable, request: Request) -> Picture:
-    from roughmdr.pictures.law import LawOptions, draw_law
+    from roughmdr.pictures.law import draw_law
     from roughmdr.pictures.lines import overlay_reference
 
-    result, note = _selected(source, request)
+    result, note = select(source.result, request.select)
     if len(result.cells) > MAX_NAMED and len(result.sweep) > 1:
         result, others = along_longest(result)
         note = f"{note}, {others}" if note else f"{others}; select chooses other cells"
@@ -83,16 +79,14 @@ def _law(source: Drawable, request: Request) -> Picture:
             raise StoreError(f"x = {x!r} does not go with curves over the result, which are over its variables")
         overlays = [(title, overlay.over(x)) for title, overlay in overlays]
     lines = [line for _, overlay in overlays for line in overlay.lines]
-    options = LawOptions(request.x, request.per_area, request.log, note)
-    figure = draw_law(result, names, lines, options)
+    figure = draw_law(result, names, lines, request, note)
     return Picture(figure, [(title, text) for title, each in overlays for text in each.remarks])
 
 
 def _sweep(source: Drawable, request: Request) -> Picture:
     from roughmdr.pictures.sweep import draw_sweep
 
-    result, note = _selected(source, request)
-    return Picture(draw_sweep(result, request, note), [])
+    return Picture(draw_sweep(*select(source.result, request.select), request), [])
 
 
 def _map(source: Drawable, request: Request) -> Picture:
@@ -128,7 +122,7 @@ def _place(result: ResultView, request: Request) -> Place:
 def _convergence(source: Drawable, request: Request) -> Picture:
     from roughmdr.pictures.convergence import draw_convergence
 
-    return Picture(draw_convergence(_selected(source, request)[0]), [])
+    return Picture(draw_convergence(select(source.result, request.select)[0]), [])
 
 
 def _fit(source: Drawable, _: Request) -> Picture:

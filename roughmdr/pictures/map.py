@@ -12,7 +12,7 @@ from roughmdr.interaction.placed import sides_of
 from roughmdr.numerics.arguments import Floats
 from roughmdr.pictures.request import Place
 from roughmdr.pictures.snapshot import Snapshot
-from roughmdr.pictures.style import COLOUR_MAP, Scale, in_words, set_title
+from roughmdr.pictures.style import COLOUR_MAP, Scale, in_words, new_figure, set_title
 from roughmdr.result.view import ResultView
 
 if TYPE_CHECKING:
@@ -115,11 +115,9 @@ def _check_placed(ensemble: Ensemble) -> None:
 
 def _start(frame: Frame, more: float) -> "tuple[Figure, Axes, Scale]":
     """Return an empty figure of a frame, ``more`` inches taller, its axes, and the scale of lengths."""
-    from roughmdr.pictures.figure import Figure
-
     aspect = frame.height / frame.width
     tall = min(_SIDE * aspect, _SIDE) if aspect >= 0.2 else 0.2 * _SIDE
-    figure = Figure(figsize=(_WIDTH, tall + more + 1.6), layout="constrained")
+    figure = new_figure(_WIDTH, tall + more + 1.6)
     ax = figure.subplots()
     x, y = (Scale.of([max(frame.width, frame.height)], name, "m") for name in "xy")
     ax.set(
