@@ -164,14 +164,14 @@ def _draw_springs(ax: "Axes", contact: OneContact, length: Scale) -> Scale:
     """Draw the MDR profile on its row of springs; return the scale of the heights."""
     from matplotlib.collections import LineCollection
 
-    r, springs = np.linspace(0.0, contact.half_width, 801), contact.springs()
+    r, (positions, stretched) = np.linspace(0.0, contact.half_width, 801), contact.springs()
     profile = contact.mdr_profile(r)
-    top = _top(r, profile, contact, float(springs.end.max()))
-    bottom = float(springs.end.min()) - 0.6 * (top - float(springs.end.min()))
+    top, lowest = _top(r, profile, contact, float(stretched.max())), float(stretched.min())
+    bottom = lowest - 0.6 * (top - lowest)
     height = Scale.of([top, bottom], "height", "m")
     _draw_body(ax, length(r), height(profile), float(height(top)))
-    x, ends, base = length(springs.x), height(springs.end), float(height(bottom))
-    held = np.abs(springs.x) < contact.state.reach
+    x, ends, base = length(positions), height(stretched), float(height(bottom))
+    held = np.abs(positions) < contact.state.reach
     for mask, colour, label in (
         (held & (ends <= 0.0), _COMPRESSED, "compressed springs"),
         (held & (ends > 0.0), _STRETCHED, "springs under tension"),

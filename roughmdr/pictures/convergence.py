@@ -5,13 +5,12 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from roughmdr.errors import StoreError
 from roughmdr.numerics.arguments import Floats, Ints
 from roughmdr.pictures.curves import quantiles
 from roughmdr.pictures.style import BRANCH_COLOURS, colours, new_figure, set_title
-from roughmdr.result.view import ResultView, step_blocks
+from roughmdr.result.view import ResultView
 from roughmdr.variables import TRAVEL
 
 if TYPE_CHECKING:
@@ -108,7 +107,7 @@ def _quantities(result: ResultView) -> Iterator[Convergence]:
                 continue
             values, span = result.variables[name].values[cell], 0.0
             if name == curve:
-                means = _means(values, done[cell])
+                means = result.mean(name)[0][cell]
                 if np.isnan(means).all():
                     continue
                 span = float(np.nanmax(means) - np.nanmin(means)) if prescribed else 0.0
@@ -117,16 +116,6 @@ def _quantities(result: ResultView) -> Iterator[Convergence]:
             values = values[np.isfinite(values)]
             if values.size > 1 and np.ptp(values) > 0.0:
                 yield Convergence(title, number, values, span)
-
-
-def _means(values: Floats, done: NDArray[np.bool_]) -> Floats:
-    """Return the mean over the realisations that are ``done`` at each step; NaN where not all of them have a number."""
-    means = np.full(values.shape[1], np.nan)
-    for block in step_blocks(*values.shape):
-        part = values[:, block][done]
-        whole = np.isfinite(part).all(axis=0)
-        means[block][whole] = part[:, whole].mean(axis=0)
-    return means
 
 
 def _draw_panel(ax: "Axes", result: ResultView, found: list[Convergence]) -> float:

@@ -1,12 +1,12 @@
 """The picture of a fit: the measured points, the fitted law, and the residuals below."""
 
-from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from roughmdr.fitting.words import describe_parameters, describe_shifts, parameter_keys, typical
 from roughmdr.pictures.style import BRANCH_COLOURS, Scale, new_figure, set_title
+from roughmdr.result.view import ResultView
 from roughmdr.storage.labelled import Labelled
 
 if TYPE_CHECKING:
@@ -84,11 +84,9 @@ def _draw_fitted(ax: "Axes", fit: Labelled, names: tuple[str, str], scales: tupl
     from matplotlib import rcParams
 
     (control, name), (x, y) = names, scales
-    branch, steps, load = fit.coordinates["branch"].values, fit.coordinates[control].values, fit.variables[name].values
-    turns = np.flatnonzero(branch[1:] != branch[:-1]) + 1
-    ends = [0, *turns.tolist(), branch.size]
-    for number, (first, last) in enumerate(pairwise(ends)):
-        along = slice(max(first - 1, 0), last)
+    steps, load = fit.coordinates[control].values, fit.variables[name].values
+    for number, leg in enumerate(ResultView(fit).legs):
+        along = slice(max(leg.steps[0] - 1, 0), leg.steps[-1] + 1)
         ax.plot(
             x(steps[along]),
             y(load[along]),
