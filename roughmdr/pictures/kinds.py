@@ -54,8 +54,7 @@ def _usual(source: Drawable, request: Request) -> str:
 
 
 def _law(source: Drawable, request: Request) -> Picture:
-    from roughmdr.pictures.law import draw_law
-    from roughmdr.pictures.lines import overlay_reference
+    from roughmdr.pictures.law import draw_law, overlay_reference
 
     result, note = select(source.result, request.select)
     if len(result.cells) > MAX_NAMED and len(result.sweep) > 1:

@@ -2,13 +2,13 @@
 
 import textwrap
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from roughmdr.errors import StoreError
+from roughmdr.numerics.arguments import Floats
 from roughmdr.pictures.curves import Curve, Quantity, curves_of, drawn_against
-from roughmdr.pictures.lines import EXPECTED, REFERENCE, OverlayLine
 from roughmdr.pictures.panel import MAX_NAMED, MAX_RUNS, Mark, Panel, draw_panel
 from roughmdr.pictures.request import Request
 from roughmdr.pictures.style import BRANCH_COLOURS, BRANCH_LINESTYLES, Scale, colours, new_figure, set_title
@@ -21,9 +21,50 @@ from roughmdr.variables import WITH_MODEL_ERROR
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+EXPECTED = "expected"
+REFERENCE = "boundary elements"
+_ABSENT = "the result holds no reference; run its scene with --set reference.model=boundary_elements"
 _THEORY_COLOURS = ("#009e73", "#e69f00", "#cc79a7", "#56b4e9", "#8c564b")
 _HANDLE, _LETTER = 0.6, 0.066  # widths in a legend [inches]
 _PULL_OFF = {"force": "pull_off_force", "pressure": "pull_off_pressure"}
+
+
+class OverlayLine(NamedTuple):
+    """A curve drawn over a result: a variable in one cell, over the whole path."""
+
+    label: str  # name of the theory curve; ``EXPECTED`` for the expected law of the scene, or ``REFERENCE``
+    variable: str
+    cell: int
+    x: Floats  # separation [m], or the variable drawn over
+    values: Floats  # NaN where the theory gives none
+
+
+class Overlay(NamedTuple):
+    """Lines to draw, and remarks on those that are drawn or, with the reason, are not."""
+
+    lines: list[OverlayLine]
+    remarks: list[str]
+
+    def over(self, name: str) -> "Overlay":
+        """Return the lines over another of their variables, without those that lack it."""
+        x = {(line.label, line.cell): line.values for line in self.lines if line.variable == name}
+        found = [line for line in self.lines if line.variable != name and (line.label, line.cell) in x]
+        remarks = self.remarks if found or not self.lines else [f"not drawn: nothing of it is over {name}"]
+        return Overlay([line._replace(x=x[line.label, line.cell]) for line in found], remarks)
+
+
+def overlay_reference(result: ResultView, names: list[str]) -> Overlay:
+    """Return the mean law by boundary elements of each cell, in those of the variables that the result has of it."""
+    given = [name for name in names if result.holds(f"reference_{name}")]
+    if not given:
+        return Overlay([], [f"not drawn: {_ABSENT}"])
+    separation = result.path
+    lines = [
+        OverlayLine(REFERENCE, name, number, separation[cell], result.mean(f"reference_{name}")[0][cell])
+        for name in given
+        for number, cell in enumerate(result.cells)
+    ]
+    return Overlay(lines, ["drawn"])
 
 
 def draw_law(
