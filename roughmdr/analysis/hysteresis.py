@@ -6,8 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roughmdr.numerics.arguments import Floats
-from roughmdr.result.curves import Branch, apply, curve, result_of, separation_of
-from roughmdr.variables import BRANCHES, LATERAL
+from roughmdr.result.curves import Branch, apply, curve, result_of
+from roughmdr.variables import BRANCHES, LATERAL, SEPARATION
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -36,7 +36,7 @@ def hysteresis(dataset: "xr.Dataset") -> "xr.Dataset":
     result = result_of(dataset)
     lateral = result.control == LATERAL.name
     force = curve(result, "tangential_force" if lateral else "force", "hysteresis needs")
-    separation = -curve(result, LATERAL.name, "") if lateral else separation_of(result)
+    separation = -curve(result, LATERAL.name) if lateral else curve(result, SEPARATION.name)
     loading, unloading = (Branch(result, branch).wanted[1:] for branch in BRANCHES)
     energies = apply(
         _energies, force, separation, core=[["step"]] * 2, out=[[]] * 6, loading=loading, unloading=unloading
@@ -50,7 +50,7 @@ def hysteresis(dataset: "xr.Dataset") -> "xr.Dataset":
         found[f"{name}_interpolation_error"] = error.assign_attrs(about)
     for name in (*_HELD, *(f"{each}_mean" for each in _HELD)):
         if name in dataset:
-            found[name] = curve(result, name, "").isel(step=-1)
+            found[name] = curve(result, name).isel(step=-1)
     titled = {"title": dataset.attrs["title"]} if "title" in dataset.attrs else {}
     return xr.Dataset(found, attrs=titled | {"comment": _MISSING})
 

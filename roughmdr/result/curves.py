@@ -10,15 +10,7 @@ from roughmdr.errors import StoreError
 from roughmdr.numerics.arguments import Ints
 from roughmdr.result.view import ResultView
 from roughmdr.schema.wording import short_repr, suggestion
-from roughmdr.variables import (
-    BRANCHES,
-    CURVE_VARIABLES,
-    LAW_VARIABLES,
-    OVER_AREA,
-    REFERENCE_VARIABLES,
-    SEPARATION,
-    STEP_COORDINATES,
-)
+from roughmdr.variables import BRANCHES, CURVE_VARIABLES, LAW_VARIABLES, OVER_AREA, STEP_COORDINATES
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -59,7 +51,7 @@ def stored_curves(result: ResultView) -> list[str]:
     return [name for name in names if name in result.variables and "step" in result.variables[name].dims]
 
 
-def curve(result: ResultView, name: str, asked: str) -> "xr.DataArray":
+def curve(result: ResultView, name: str, asked: str = "ds.roughmdr needs") -> "xr.DataArray":
     """Return a variable over the steps, or its mean, computed from another where the result does not hold it.
 
     StoreError where it holds neither; ``asked`` are the words before the name in its message, such as "x is".
@@ -83,11 +75,6 @@ def curve(result: ResultView, name: str, asked: str) -> "xr.DataArray":
     if name in LAW_VARIABLES:
         raise StoreError(f"{asked} {name!r}, which this result does not hold; it holds {', '.join(allowed)}")
     raise StoreError(f"{asked} {short_repr(name)}, no variable of a result{suggestion(str(name), allowed)}")
-
-
-def separation_of(result: ResultView) -> "xr.DataArray":
-    """Return the separation [m] over the steps, a coordinate or a variable."""
-    return curve(result, SEPARATION.name, "ds.roughmdr needs")
 
 
 def apply(
@@ -118,11 +105,6 @@ def apply(
         output_dtypes=[arrays[0].dtype] * len(out),
     )
     return found if len(out) > 1 else (found,)
-
-
-def is_reference(name: str) -> bool:
-    """Return whether a curve is of the reference by boundary elements."""
-    return name.removesuffix("_mean") in REFERENCE_VARIABLES
 
 
 class Read(NamedTuple):

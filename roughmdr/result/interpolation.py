@@ -9,17 +9,7 @@ from roughmdr.errors import OutOfRange
 from roughmdr.model_error.parts import PLASTIC
 from roughmdr.numerics.arguments import Floats, Ints
 from roughmdr.result.between import AT_A_PLACE, CONFIDENCE, REACH, off_line
-from roughmdr.result.curves import (
-    PER_AREA,
-    Branch,
-    Read,
-    apply,
-    curve,
-    is_reference,
-    result_of,
-    separation_of,
-    stored_curves,
-)
+from roughmdr.result.curves import PER_AREA, Branch, Read, apply, curve, result_of, stored_curves
 from roughmdr.result.grid_errors import grid_errors
 from roughmdr.result.model_errors import LOADS, errors_there, lowest_so_far
 from roughmdr.result.view import ResultView
@@ -45,15 +35,16 @@ def at_value(dataset: "xr.Dataset", name: str, values: ArrayLike, branch: str) -
     if name.endswith("contact_fraction") and np.max(wanted) > 1.0:
         raise OutOfRange(f"{name} is {np.max(wanted):g}; it must be at most 1")
     on = Branch(result, branch)
-    own, beside = name.removeprefix("reference_"), " with reference=True" if is_reference(name) else ""
+    own = name.removeprefix("reference_")
+    beside = " with reference=True" if own != name else ""
     reached = curve(result, name, f"at_{own}{beside} needs")
-    path = curve(result, result.control, "ds.roughmdr needs")
+    path = curve(result, result.control)
     points = xr.DataArray(np.atleast_1d(wanted), dims=name)
     brackets = apply(_brackets, reached, points, core=[["step"], [name]], out=[[name]] * 3, branch=on)
     found, read = dict[str, xr.DataArray](), dict[str, Read]()
     curves = {name: reached} | _curves(result, name)
     if PLASTIC in result.variables:
-        curves[LOADS] = lowest_so_far(separation_of(result))
+        curves[LOADS] = lowest_so_far(curve(result, SEPARATION.name))
     for label, array in curves.items():
         value, error, rise = apply(
             _interpolate,
@@ -81,17 +72,13 @@ def at_value(dataset: "xr.Dataset", name: str, values: ArrayLike, branch: str) -
 
 def _curves(result: ResultView, name: str) -> "dict[str, xr.DataArray]":
     """Return the separation, all curves, and those that follow from them, but those of ``name`` itself."""
-    dataset = result.dataset
-    curves = {each: curve(result, each, "") for each in stored_curves(result)}
+    curves = {each: curve(result, each) for each in [result.control, *stored_curves(result)]}
     suffix = "_mean" if result.keeps_statistics else ""
     for derived, total in PER_AREA.items():
-        if f"{total}{suffix}" in curves and f"{derived}{suffix}" not in curves and "nominal_area" in dataset:
-            curves[f"{derived}{suffix}"] = curve(result, derived, "ds.roughmdr needs")
-    control = result.control
-    if control in dataset.coords:
-        curves = {control: curve(result, control, "ds.roughmdr needs"), **curves}
+        if f"{total}{suffix}" in curves and f"{derived}{suffix}" not in curves and "nominal_area" in result.variables:
+            curves[f"{derived}{suffix}"] = curve(result, derived)
     if SEPARATION.name not in curves and f"{SEPARATION.name}_mean" not in curves:
-        curves = {SEPARATION.name: separation_of(result), **curves}
+        curves = {SEPARATION.name: curve(result, SEPARATION.name), **curves}
     return {each: array for each, array in curves.items() if each.removesuffix("_mean") != name}
 
 
