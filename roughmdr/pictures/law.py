@@ -224,18 +224,14 @@ def _add_colour_bar(figure: "Figure", result: ResultView, palette: Sequence[str]
     bar = figure.colorbar(mapped, ax=figure.axes, shrink=0.8, aspect=40, pad=0.02)
     shown = np.unique(np.linspace(0, len(palette) - 1, 6).astype(int))
     if coordinate is None:
-        bar.set_ticks(list(map(float, shown)), labels=[str(number) for number in shown])
-        bar.set_label(f"cells of {', '.join(result.sweep)}, the last key fastest")
-        return
-    name, values = coordinate
-    if values.values.dtype.kind in "if":
-        scale = Scale.of(values.values, name, str(values.attrs.get("units", "1")))
-        labels = [f"{scale(value):.3g}" for value in values.values[shown]]
-        bar.set_label(scale.label)
+        label, labels = f"cells of {', '.join(result.sweep)}, the last key fastest", list(map(str, shown))
+    elif (values := coordinate[1].values).dtype.kind in "if":
+        scale = Scale.of(values, coordinate[0], str(coordinate[1].attrs.get("units", "1")))
+        label, labels = scale.label, [f"{scale(value):.3g}" for value in values[shown]]
     else:
-        labels = [str(value) for value in values.values[shown]]
-        bar.set_label(name.replace("_", " "))
+        label, labels = coordinate[0].replace("_", " "), list(map(str, values[shown]))
     bar.set_ticks(list(map(float, shown)), labels=labels)
+    bar.set_label(label)
 
 
 def _only_coordinate(result: ResultView) -> tuple[str, Array] | None:
