@@ -8,7 +8,7 @@ import numpy as np
 from roughmdr.analysis.pull_off import pull_off
 from roughmdr.errors import StoreError
 from roughmdr.fitting.words import fit_lines
-from roughmdr.result.curves import is_ensemble, is_result, stored_curves
+from roughmdr.result.curves import is_ensemble, is_result
 from roughmdr.result.trust import trust_of_result
 from roughmdr.result.view import ResultView
 from roughmdr.schema.units import format_quantity
@@ -59,10 +59,9 @@ def _describe_result(result: ResultView) -> Iterator[tuple[str, str]]:
 
 def _axes(result: ResultView) -> list[tuple[str, str]]:
     """Return the swept keys with their ranges."""
-    dataset = result.dataset
-    swept = {dim for name in stored_curves(result) for dim in dataset[name].dims} - {"realization", "step"}
+    dataset, swept = result.dataset, {*result.sweep}
     others = (*AUXILIARY_COORDINATES, *STEP_COORDINATES)
-    names = [str(name) for name, each in dataset.coords.items() if name not in others and set(each.dims) <= swept]
+    names = [str(name) for name, each in dataset.coords.items() if name not in others and {*each.dims} <= swept]
     return [(name, _range(dataset[name])) for name in names]
 
 

@@ -5,10 +5,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from roughmdr.analysis.apply import over
 from roughmdr.numerics.arguments import Floats
-from roughmdr.result.curves import Branch, alone, curve, result_of, separation_of
-from roughmdr.variables import BRANCHES, LATERAL
+from roughmdr.result.curves import Branch, apply, curve, result_of
+from roughmdr.variables import BRANCHES, LATERAL, SEPARATION
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -36,10 +35,12 @@ def hysteresis(dataset: "xr.Dataset") -> "xr.Dataset":
 
     result = result_of(dataset)
     lateral = result.control == LATERAL.name
-    force = alone(curve(result, "tangential_force" if lateral else "force", "hysteresis needs"))
-    separation = -alone(curve(result, LATERAL.name, "")) if lateral else alone(separation_of(result))
+    force = curve(result, "tangential_force" if lateral else "force", "hysteresis needs")
+    separation = -curve(result, LATERAL.name) if lateral else curve(result, SEPARATION.name)
     loading, unloading = (Branch(result, branch).wanted[1:] for branch in BRANCHES)
-    energies = over("step", _energies, force, separation, parts=6, loading=loading, unloading=unloading)
+    energies = apply(
+        _energies, force, separation, core=[["step"]] * 2, out=[[]] * 6, loading=loading, unloading=unloading
+    )
     found: dict[str, xr.DataArray] = {}
     names = _LATERAL_NAMES if lateral else _NAMES
     for (name, long_name), value, error in zip(names.items(), energies[::2], energies[1::2], strict=True):
@@ -49,7 +50,7 @@ def hysteresis(dataset: "xr.Dataset") -> "xr.Dataset":
         found[f"{name}_interpolation_error"] = error.assign_attrs(about)
     for name in (*_HELD, *(f"{each}_mean" for each in _HELD)):
         if name in dataset:
-            found[name] = alone(dataset[name]).isel(step=-1)
+            found[name] = curve(result, name).isel(step=-1)
     titled = {"title": dataset.attrs["title"]} if "title" in dataset.attrs else {}
     return xr.Dataset(found, attrs=titled | {"comment": _MISSING})
 

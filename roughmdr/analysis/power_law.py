@@ -5,11 +5,10 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from roughmdr.analysis.apply import over
 from roughmdr.batch.moments import mean_and_error
 from roughmdr.errors import StoreError
 from roughmdr.numerics.arguments import Floats
-from roughmdr.result.curves import Branch, alone, curve, result_of
+from roughmdr.result.curves import Branch, apply, curve, result_of
 from roughmdr.result.view import ResultView
 from roughmdr.schema.arguments import check_values
 from roughmdr.schema.wording import short_repr
@@ -45,11 +44,13 @@ def fit_power_law(dataset: "xr.Dataset", y: str, x: str, branch: str, between: B
     import xarray as xr
 
     result = result_of(dataset)
-    along, abscissa = (alone(curve(result, name, asked)) for name, asked in ((y, "y is"), (x, "x is")))
+    along, abscissa = (curve(result, name, asked) for name, asked in ((y, "y is"), (x, "x is")))
     both = {"y": along.attrs.get("units", "1"), "x": abscissa.attrs.get("units", "1")}
     low, high = (0.0, np.inf) if between is None else _ends(between, both["x"])
-    chosen, parts = _chosen(result, branch), len(_Sums._fields)
-    sums = over("step", _sums, abscissa, along, parts=parts, chosen=chosen, low=low, high=high)
+    chosen = _chosen(result, branch)
+    sums = apply(
+        _sums, abscissa, along, core=[["step"]] * 2, out=[[]] * len(_Sums._fields), chosen=chosen, low=low, high=high
+    )
     if "realization" not in sums[0].dims:
         sums = tuple(each.expand_dims("realization", axis=-1) for each in sums)
     names = {
@@ -61,7 +62,7 @@ def fit_power_law(dataset: "xr.Dataset", y: str, x: str, branch: str, between: B
         "rms_residual": ("1", f"root mean square of the misfit in log {y}: relative"),
         "points": ("1", "number of points"),
     }
-    fitted = over("realization", _fit, *sums, parts=len(names))
+    fitted = apply(_fit, *sums, core=[["realization"]] * len(sums), out=[[]] * len(names))
     data = {
         name: array.assign_attrs(units=units, long_name=long_name)
         for (name, (units, long_name)), array in zip(names.items(), fitted, strict=True)

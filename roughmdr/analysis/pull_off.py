@@ -4,12 +4,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from roughmdr.analysis.apply import over
 from roughmdr.batch.moments import mean_and_error
 from roughmdr.errors import StoreError
 from roughmdr.model_error.at_force import pull_off_error
 from roughmdr.model_error.parts import PLASTIC
-from roughmdr.result.curves import result_of
+from roughmdr.result.curves import apply, result_of
 from roughmdr.variables import ADHESION_CODES
 
 if TYPE_CHECKING:
@@ -61,25 +60,21 @@ def _mean_and_error(dataset: "xr.Dataset", name: str) -> "tuple[xr.DataArray, xr
     each = dataset[name]
     if "realization" not in each.dims:
         return each, xr.full_like(each, np.nan)
-    mean, error = over("realization", lambda values: mean_and_error(values, np.isfinite(values)), each, parts=2)
+    mean, error = apply(lambda of: mean_and_error(of, np.isfinite(of)), each, core=[["realization"]], out=[[]] * 2)
     attrs = each.attrs | {"long_name": f"mean of the {each.attrs['long_name']}"}
     return mean.assign_attrs(attrs), error
 
 
 def _model_error(dataset: "xr.Dataset", force: "xr.DataArray", fraction: "xr.DataArray") -> "xr.DataArray":
     """Return the error of the pull-off force by the assumptions of the model [N]."""
-    import xarray as xr
-
     unknown = np.nan * dataset["interaction_error"]
     over_runs = [dim for dim in unknown.dims if dim == "realization"]
     names = ("interaction_error", "slope_error", "asperity_origin", "grid_points")
-    numbers = [dataset.get(name, unknown).max(over_runs) for name in names]
+    others = [dataset.get(name, unknown).max(over_runs) for name in names]
     tabor = dataset.get("tabor_number", unknown)
     if "adhesion_law" in dataset:
         tabor = tabor.where(dataset["adhesion_law"] == ADHESION_CODES.index("jkr"))
-    relative = xr.apply_ufunc(
-        pull_off_error, fraction, tabor.min(over_runs), *numbers, dask="parallelized", output_dtypes=[np.float64]
-    )
+    numbers = fraction, tabor.min(over_runs), *others
+    (relative,) = apply(pull_off_error, *numbers, core=[[]] * len(numbers), out=[[]])
     about = "estimated error of the pull-off force by the assumptions of the model"
-    found: xr.DataArray = (relative * abs(force)).assign_attrs(units="N", long_name=about)
-    return found
+    return (relative * abs(force)).assign_attrs(units="N", long_name=about)

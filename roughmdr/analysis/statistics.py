@@ -7,14 +7,13 @@ import numpy as np
 import tomli_w
 from numpy.typing import NDArray
 
-from roughmdr.analysis.apply import in_one_chunk, over
 from roughmdr.batch.moments import statistics_of
 from roughmdr.errors import StoreError
 from roughmdr.loading.path import LoadingPath
 from roughmdr.model_error.at_given import FORCES
 from roughmdr.numerics.arguments import Floats
 from roughmdr.result.cells import of_cells
-from roughmdr.result.curves import result_of, stored_curves
+from roughmdr.result.curves import apply, result_of, stored_curves
 from roughmdr.result.model_errors import errors_along
 from roughmdr.result.view import ResultView
 from roughmdr.schema.toml_text import parse_toml
@@ -121,7 +120,7 @@ def _statistics(dataset: "xr.Dataset", name: str, counted: "xr.DataArray") -> "d
     array = dataset[name]
     if array.chunks is not None and "step" in array.dims:
         array = array.chunk({"realization": -1, "step": "auto"})
-    found = over("realization", _counted, array, counted, parts=len(STATISTICS))
+    found = apply(_counted, array, counted, core=[["realization"]] * 2, out=[[]] * len(STATISTICS))
     parts = dict(zip(STATISTICS, found, strict=True))
     the = "the " if name in PULL_OFF else ""
     attrs = {
@@ -169,29 +168,16 @@ def _has_variance(dataset: "xr.Dataset") -> "xr.DataArray | None":
 
 def _reduced(array: "xr.DataArray", rule: str) -> "xr.DataArray":
     """Return a diagnostic merged over the realisations."""
-    import xarray as xr
-
-    merged: xr.DataArray = xr.apply_ufunc(
-        getattr(np, rule).reduce,
-        in_one_chunk(array, "realization"),
-        kwargs={"axis": -1},
-        input_core_dims=[["realization"]],
-        keep_attrs=True,
-        dask="parallelized",
-        output_dtypes=[array.dtype],
-    )
-    return merged
+    (merged,) = apply(getattr(np, rule).reduce, array, core=[["realization"]], out=[[]], axis=-1)
+    return merged.assign_attrs(array.attrs)
 
 
 def _first_text(remark: "xr.DataArray") -> "xr.DataArray":
     """Return the first text over the realisations of each cell that is not empty."""
     import xarray as xr
 
-    def first(texts: NDArray[Any]) -> object:
-        return next(filter(None, map(str, texts)), "")
-
     merged: xr.DataArray = xr.apply_ufunc(
-        first,
+        lambda texts: next(filter(None, map(str, texts)), ""),
         remark.compute(),
         input_core_dims=[["realization"]],
         keep_attrs=True,

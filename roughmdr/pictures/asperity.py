@@ -5,7 +5,7 @@ problems with and without adhesion" (2012).
 """
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Unpack
 
 import numpy as np
 
@@ -13,8 +13,9 @@ from roughmdr.ensemble import Ensemble
 from roughmdr.errors import StoreError
 from roughmdr.numerics.arguments import Floats
 from roughmdr.pictures.one_contact import OneContact
+from roughmdr.pictures.request import Place
 from roughmdr.pictures.snapshot import Snapshot
-from roughmdr.pictures.style import BRANCH_COLOURS, Scale, in_words, set_title
+from roughmdr.pictures.style import BRANCH_COLOURS, Scale, in_words, new_figure, set_title
 from roughmdr.result.view import ResultView
 from roughmdr.shapes import SHAPES, Shape
 
@@ -32,13 +33,7 @@ _STRAIGHT = 2  # straight points at each end of a drawn spring
 
 
 def draw_asperity(
-    result: ResultView,
-    file: Path | None = None,
-    *,
-    cell: tuple[int, ...] | None = None,
-    realization: int = 0,
-    step: int | None = None,
-    asperity: int | None = None,
+    result: ResultView, file: Path | None = None, *, asperity: int | None = None, **place: Unpack[Place]
 ) -> "Figure":
     """Draw one asperity of a realisation at a step: profile and surface, MDR profile and springs, and pressure.
 
@@ -46,7 +41,7 @@ def draw_asperity(
     asperities are numbered from the highest down. ``file`` is that of the result, if any. StoreError where it is not in
     contact; others as ``Snapshot.of``.
     """
-    now = Snapshot.of(result, file, cell=cell, realization=realization, step=step, placed=False)
+    now = Snapshot.of(result, file, placed=False, **place)
     force, active, count = now.contacts.force, now.contacts.active, now.ensemble.height.size
     if not active.any():
         raise StoreError(f"no asperity is in contact at {now.place}; give another step")
@@ -87,9 +82,7 @@ def _shape_of(ensemble: Ensemble, number: int) -> Shape:
 
 def draw_contact(contact: OneContact, force: float, title: str, notes: list[str]) -> "Figure":
     """Draw a contact that bears a force [N], with a title and notes, to which its numbers are added."""
-    from roughmdr.pictures.figure import Figure
-
-    figure = Figure(figsize=_SIZE, layout="constrained")
+    figure = new_figure(*_SIZE)
     profile, row, load = figure.subplots(3, 1, sharex=True)
     length = Scale.of([contact.half_width], "distance from the axis, r or x", "m")
     heights = [_draw_profile(profile, contact, length), _draw_springs(row, contact, length)]
@@ -171,14 +164,14 @@ def _draw_springs(ax: "Axes", contact: OneContact, length: Scale) -> Scale:
     """Draw the MDR profile on its row of springs; return the scale of the heights."""
     from matplotlib.collections import LineCollection
 
-    r, springs = np.linspace(0.0, contact.half_width, 801), contact.springs()
+    r, (positions, stretched) = np.linspace(0.0, contact.half_width, 801), contact.springs()
     profile = contact.mdr_profile(r)
-    top = _top(r, profile, contact, float(springs.end.max()))
-    bottom = float(springs.end.min()) - 0.6 * (top - float(springs.end.min()))
+    top, lowest = _top(r, profile, contact, float(stretched.max())), float(stretched.min())
+    bottom = lowest - 0.6 * (top - lowest)
     height = Scale.of([top, bottom], "height", "m")
     _draw_body(ax, length(r), height(profile), float(height(top)))
-    x, ends, base = length(springs.x), height(springs.end), float(height(bottom))
-    held = np.abs(springs.x) < contact.state.reach
+    x, ends, base = length(positions), height(stretched), float(height(bottom))
+    held = np.abs(positions) < contact.state.reach
     for mask, colour, label in (
         (held & (ends <= 0.0), _COMPRESSED, "compressed springs"),
         (held & (ends > 0.0), _STRETCHED, "springs under tension"),

@@ -5,13 +5,12 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from roughmdr.errors import StoreError
 from roughmdr.numerics.arguments import Floats, Ints
 from roughmdr.pictures.curves import quantiles
-from roughmdr.pictures.style import BRANCH_COLOURS, colours, set_title
-from roughmdr.result.view import ResultView, step_blocks
+from roughmdr.pictures.style import BRANCH_COLOURS, colours, new_figure, set_title
+from roughmdr.result.view import ResultView
 from roughmdr.variables import TRAVEL
 
 if TYPE_CHECKING:
@@ -62,8 +61,6 @@ def draw_convergence(result: ResultView) -> "Figure":
     of the model and the error asked for. More than a few cells are a band with their median. StoreError where the
     result holds no realisations, or too few.
     """
-    from roughmdr.pictures.figure import Figure
-
     if "realization" not in result.sizes:
         raise StoreError(
             "the result holds statistics, not its realisations; run its scene with output.keep = 'curves' to see how "
@@ -76,7 +73,7 @@ def draw_convergence(result: ResultView) -> "Figure":
             "batch.realizations, and batch.estimator = 'sampled'"
         )
     names = list(dict.fromkeys(each.name for each in found))
-    figure = Figure(figsize=(max(5.0 * len(names), 7.0), 5.4), layout="constrained")
+    figure = new_figure(max(5.0 * len(names), 7.0), 5.4)
     axes = figure.subplots(1, len(names), sharey=True, squeeze=False).ravel()
     notes, named, lowest = [], dict[str, Any](), math.inf
     for ax, name in zip(axes, names, strict=True):
@@ -110,7 +107,7 @@ def _quantities(result: ResultView) -> Iterator[Convergence]:
                 continue
             values, span = result.variables[name].values[cell], 0.0
             if name == curve:
-                means = _means(values, done[cell])
+                means = result.mean(name)[0][cell]
                 if np.isnan(means).all():
                     continue
                 span = float(np.nanmax(means) - np.nanmin(means)) if prescribed else 0.0
@@ -119,16 +116,6 @@ def _quantities(result: ResultView) -> Iterator[Convergence]:
             values = values[np.isfinite(values)]
             if values.size > 1 and np.ptp(values) > 0.0:
                 yield Convergence(title, number, values, span)
-
-
-def _means(values: Floats, done: NDArray[np.bool_]) -> Floats:
-    """Return the mean over the realisations that are ``done`` at each step; NaN where not all of them have a number."""
-    means = np.full(values.shape[1], np.nan)
-    for block in step_blocks(*values.shape):
-        part = values[:, block][done]
-        whole = np.isfinite(part).all(axis=0)
-        means[block][whole] = part[:, whole].mean(axis=0)
-    return means
 
 
 def _draw_panel(ax: "Axes", result: ResultView, found: list[Convergence]) -> float:

@@ -35,32 +35,30 @@ _BAND = (0.16, 0.84)
 
 
 class Quantity(NamedTuple):
-    """A variable as it is drawn: its name on the axis, its unit, and the area that it is divided by in each cell."""
+    """A variable as it is drawn: its name on the axis, its unit, and what it is divided by in each cell."""
 
     variable: str
     name: str
     unit: str
-    area: Floats | None
+    area: Floats  # nominal, or 1
 
     @classmethod
     def of(cls, result: ResultView, variable: str, *, per_area: bool = False) -> "Quantity":
         """Return a variable of a result, per nominal area where that is asked for and it is a sum over asperities."""
         name, unit = _LONG_NAMES.get(variable, variable.replace("_", " ")), LAW_VARIABLES[variable].units
         if not per_area or variable not in _PER_AREA:
-            return cls(variable, name, unit, None)
+            return cls(variable, name, unit, np.ones(tuple(result.sweep.values())))
         if "nominal_area" not in result.variables:
             raise StoreError("the result has no nominal_area to divide by: its asperities have none, or it is older")
         return cls(variable, *_PER_AREA[variable], result.variables["nominal_area"].values)
 
     def scaled(self, values: Floats) -> Floats:
         """Return numbers of the variable, over the swept keys and more, as they are drawn."""
-        if self.area is None:
-            return values
-        return np.asarray(values / self.area.reshape((*self.area.shape, *([1] * (values.ndim - self.area.ndim)))))
+        return np.asarray(values / np.expand_dims(self.area, tuple(range(self.area.ndim, values.ndim))))
 
     def in_cell(self, values: Floats, cell: tuple[int, ...]) -> Floats:
         """Return numbers of the variable in one cell as they are drawn."""
-        return values if self.area is None else np.asarray(values / self.area[cell])
+        return np.asarray(values / self.area[cell])
 
 
 class Runs(NamedTuple):
@@ -86,7 +84,6 @@ class Curve(NamedTuple):
     """A quantity in one cell of a result, over one loading or unloading."""
 
     cell: int
-    leg: int  # number of the loading or unloading of the path, from 0
     branch: str
     x: Floats
     middle: Floats  # mean over the realisations; of a stiffness where contacts detach the median
@@ -115,13 +112,14 @@ def curves_of(result: ResultView, quantity: Quantity, x: Quantity) -> Iterator[C
     mean, error = _mean(result, name)
     xs = _runs(result, x.variable)
     x_mean = _mean(result, x.variable)[0]
-    model_error = _model_error(result, name, mean)
+    known = result.holds("model_error_curve")
+    model_error = error_of_mean(result, name) if known else np.full_like(mean, np.nan)
     mean, error, model_error, x_mean = *map(quantity.scaled, (mean, error, model_error)), x.scaled(x_mean)
     sticky, yielding = result.adheres, name == "stiffness" and PLASTIC in result.variables
     for number, cell in enumerate(np.ndindex(mean.shape[:-1])):
         computed = np.flatnonzero(done[cell])[: runs.shape[-2]]
-        areas = [1.0 if each.area is None else float(each.area[cell]) for each in (quantity, x)]
-        for leg, (branch, along) in enumerate(_legs(result)):
+        areas = [float(each.area[cell]) for each in (quantity, x)]
+        for branch, along in _legs(result):
             rises = yielding and branch == "unloading" and result.branches[along[0]] != branch
             # At a turn that is not repeated the stiffness is that of yielding.
             steps = slice(along[int(rises)], along[-1] + 1)
@@ -134,7 +132,7 @@ def curves_of(result: ResultView, quantity: Quantity, x: Quantity) -> Iterator[C
                 middle, low, high = _medians(middle, some)
                 some = some._replace(computed=computed[:0])
             yield Curve(
-                number, leg, branch, x_mean[cell][steps], middle, low, high,
+                number, branch, x_mean[cell][steps], middle, low, high,
                 model_error[cell][steps], some, some_x,
             )  # fmt: skip
 
@@ -193,8 +191,3 @@ def _mean(result: ResultView, name: str) -> tuple[Floats, Floats]:
         values = result.over_steps(name)
         return values, np.full_like(values, np.nan)
     return result.mean(name)
-
-
-def _model_error(result: ResultView, name: str, mean: Floats) -> Floats:
-    """Return the error of the model of a mean, of a result with the error at each step; NaN where it is not known."""
-    return error_of_mean(result, name) if result.holds("model_error_curve") else np.full_like(mean, np.nan)

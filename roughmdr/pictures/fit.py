@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from roughmdr.fitting.words import describe_parameters, describe_shifts, load_of, parameter_names, typical
-from roughmdr.pictures.style import BRANCH_COLOURS, Scale, set_title
+from roughmdr.pictures.style import BRANCH_COLOURS, Scale, new_figure, set_title
 from roughmdr.storage.labelled import Labelled
 
 if TYPE_CHECKING:
@@ -18,11 +18,9 @@ _CONTROLS = {"separation": "measured separation", "remote": "measured position o
 
 def draw_fits(fits: Labelled) -> "Figure":
     """Draw how each parameter, and the size of the residuals, are distributed over many curves."""
-    from roughmdr.pictures.figure import Figure
-
     names = parameter_names(fits) | {"residual over largest load": "residual_rms"}
     drawn = {key: array for key, name in names.items() if (array := fits.variables[name]).dims}
-    figure = Figure(figsize=(6.4, 2.1 * len(drawn)), layout="constrained")
+    figure = new_figure(6.4, 2.1 * len(drawn))
     for ax, (key, array) in zip(figure.subplots(len(drawn), 1, squeeze=False).flat, drawn.items(), strict=True):
         values = array.values[np.isfinite(array.values)]
         scale = Scale.of(values, key, array.attrs["units"])
@@ -36,10 +34,8 @@ def draw_fit(fit: Labelled) -> "Figure":
     """Draw the measured points over the fitted law, loading and unloading in their colours, and the residuals below."""
     from matplotlib import rcParams
 
-    from roughmdr.pictures.figure import Figure
-
     control, load = next(name for name in _CONTROLS if name in fit.coordinates), load_of(fit)
-    figure = Figure(figsize=(6.4, 5.6), layout="constrained")
+    figure = new_figure(6.4, 5.6)
     law, residual = figure.subplots(2, 1, sharex=True, height_ratios=(3.0, 1.0))
     x = Scale.of(fit.coordinates[control].values, _CONTROLS[control], "m")
     y = Scale.of(fit.variables[load].values, load, fit.variables[load].attrs["units"])

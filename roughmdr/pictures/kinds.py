@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 from roughmdr.errors import StoreError
 from roughmdr.pictures.panel import MAX_NAMED
-from roughmdr.pictures.request import Content, Drawable, Picture, Request
+from roughmdr.pictures.request import Content, Drawable, Picture, Place, Request
 from roughmdr.result.select import along_longest, cell_of, pull_off_step, select
 from roughmdr.result.view import ResultView
 from roughmdr.schema.wording import suggestion
@@ -53,15 +53,10 @@ def _usual(source: Drawable, request: Request) -> str:
     return "sweep" if len(source.result.cells) > MAX_NAMED else "law"
 
 
-def _selected(source: Drawable, request: Request) -> tuple[ResultView, str]:
-    return select(source.result, request.select) if request.select else (source.result, "")
-
-
 def _law(source: Drawable, request: Request) -> Picture:
-    from roughmdr.pictures.law import LawOptions, draw_law
-    from roughmdr.pictures.lines import overlay_reference
+    from roughmdr.pictures.law import draw_law, overlay_reference
 
-    result, note = _selected(source, request)
+    result, note = select(source.result, request.select)
     if len(result.cells) > MAX_NAMED and len(result.sweep) > 1:
         result, others = along_longest(result)
         note = f"{note}, {others}" if note else f"{others}; select chooses other cells"
@@ -83,16 +78,14 @@ def _law(source: Drawable, request: Request) -> Picture:
             raise StoreError(f"x = {x!r} does not go with curves over the result, which are over its variables")
         overlays = [(title, overlay.over(x)) for title, overlay in overlays]
     lines = [line for _, overlay in overlays for line in overlay.lines]
-    options = LawOptions(request.x, request.per_area, request.log, note)
-    figure = draw_law(result, names, lines, options)
+    figure = draw_law(result, names, lines, request, note)
     return Picture(figure, [(title, text) for title, each in overlays for text in each.remarks])
 
 
 def _sweep(source: Drawable, request: Request) -> Picture:
     from roughmdr.pictures.sweep import draw_sweep
 
-    result, note = _selected(source, request)
-    return Picture(draw_sweep(result, request, note), [])
+    return Picture(draw_sweep(*select(source.result, request.select), request), [])
 
 
 def _map(source: Drawable, request: Request) -> Picture:
@@ -105,33 +98,30 @@ def _map(source: Drawable, request: Request) -> Picture:
             raise StoreError(f"{unfit[0]} does not go with asperities, which have no path")
         ensemble = Ensemble.from_dataset(source.data.to_xarray())
         return Picture(draw_ensemble(ensemble, str(source.data.attrs.get("title", "asperities"))), [])
-    cell, realization, step = _place(source.result, request)
-    return Picture(draw_map(source.result, source.file, cell=cell, realization=realization, step=step), [])
+    return Picture(draw_map(source.result, source.file, **_place(source.result, request)), [])
 
 
 def _asperity(source: Drawable, request: Request) -> Picture:
     from roughmdr.pictures.asperity import draw_asperity
 
-    cell, realization, step = _place(source.result, request)
-    figure = draw_asperity(
-        source.result, source.file, cell=cell, realization=realization, step=step, asperity=request.asperity
-    )
-    return Picture(figure, [])
+    place = _place(source.result, request)
+    return Picture(draw_asperity(source.result, source.file, asperity=request.asperity, **place), [])
 
 
-def _place(result: ResultView, request: Request) -> tuple[tuple[int, ...], int, int | None]:
+def _place(result: ResultView, request: Request) -> Place:
     """Return the cell, the realisation and the step that are asked for; a step of None is the closest approach."""
-    cell, realization = cell_of(result, request.select), request.realization or 0
-    step = request.step
-    if isinstance(step, str) and step != _PULL_OFF:
-        raise StoreError(f"step is {step!r}; it must be a number from 0, or {_PULL_OFF!r}")
-    return cell, realization, pull_off_step(result, cell, realization) if isinstance(step, str) else step
+    cell, realization, step = cell_of(result, request.select), request.realization or 0, request.step
+    if isinstance(step, str):
+        if step != _PULL_OFF:
+            raise StoreError(f"step is {step!r}; it must be a number from 0, or {_PULL_OFF!r}")
+        step = pull_off_step(result, cell, realization)
+    return {"cell": cell, "realization": realization, "step": step}
 
 
 def _convergence(source: Drawable, request: Request) -> Picture:
     from roughmdr.pictures.convergence import draw_convergence
 
-    return Picture(draw_convergence(_selected(source, request)[0]), [])
+    return Picture(draw_convergence(select(source.result, request.select)[0]), [])
 
 
 def _fit(source: Drawable, _: Request) -> Picture:

@@ -7,10 +7,11 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from roughmdr.errors import StoreError
+from roughmdr.numerics.arguments import Floats
 from roughmdr.pictures.curves import Curve, Quantity, curves_of, drawn_against
-from roughmdr.pictures.lines import EXPECTED, REFERENCE, OverlayLine
 from roughmdr.pictures.panel import MAX_NAMED, MAX_RUNS, Mark, Panel, draw_panel
-from roughmdr.pictures.style import BRANCH_COLOURS, BRANCH_LINESTYLES, THEORY_COLOURS, Scale, colours, set_title
+from roughmdr.pictures.request import Request
+from roughmdr.pictures.style import BRANCH_COLOURS, BRANCH_LINESTYLES, Scale, colours, new_figure, set_title
 from roughmdr.result.trust import trust_of_result
 from roughmdr.result.view import ResultView
 from roughmdr.schema.wording import escape_controls
@@ -20,22 +21,54 @@ from roughmdr.variables import WITH_MODEL_ERROR
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+EXPECTED = "expected"
+REFERENCE = "boundary elements"
+_ABSENT = "the result holds no reference; run its scene with --set reference.model=boundary_elements"
+_THEORY_COLOURS = ("#009e73", "#e69f00", "#cc79a7", "#56b4e9", "#8c564b")
 _HANDLE, _LETTER = 0.6, 0.066  # widths in a legend [inches]
 _PULL_OFF = {"force": "pull_off_force", "pressure": "pull_off_pressure"}
 
 
-class LawOptions(NamedTuple):
-    """Options of the picture of a law."""
+class OverlayLine(NamedTuple):
+    """A curve drawn over a result: a variable in one cell, over the whole path."""
 
-    x: str | None = None
-    per_area: bool = False
-    log: bool | None = None
-    note: str = ""
-    """The part of a sweep that is drawn."""
+    label: str  # name of the theory curve; ``EXPECTED`` for the expected law of the scene, or ``REFERENCE``
+    variable: str
+    cell: int
+    x: Floats  # separation [m], or the variable drawn over
+    values: Floats  # NaN where the theory gives none
+
+
+class Overlay(NamedTuple):
+    """Lines to draw, and remarks on those that are drawn or, with the reason, are not."""
+
+    lines: list[OverlayLine]
+    remarks: list[str]
+
+    def over(self, name: str) -> "Overlay":
+        """Return the lines over another of their variables, without those that lack it."""
+        x = {(line.label, line.cell): line.values for line in self.lines if line.variable == name}
+        found = [line for line in self.lines if line.variable != name and (line.label, line.cell) in x]
+        remarks = self.remarks if found or not self.lines else [f"not drawn: nothing of it is over {name}"]
+        return Overlay([line._replace(x=x[line.label, line.cell]) for line in found], remarks)
+
+
+def overlay_reference(result: ResultView, names: list[str]) -> Overlay:
+    """Return the mean law by boundary elements of each cell, in those of the variables that the result has of it."""
+    given = [name for name in names if result.holds(f"reference_{name}")]
+    if not given:
+        return Overlay([], [f"not drawn: {_ABSENT}"])
+    separation = result.path
+    lines = [
+        OverlayLine(REFERENCE, name, number, separation[cell], result.mean(f"reference_{name}")[0][cell])
+        for name in given
+        for number, cell in enumerate(result.cells)
+    ]
+    return Overlay(lines, ["drawn"])
 
 
 def draw_law(
-    result: ResultView, names: list[str], lines: Sequence[OverlayLine] = (), options: LawOptions = LawOptions()
+    result: ResultView, names: list[str], lines: Sequence[OverlayLine], request: Request, note: str
 ) -> "Figure":
     """Draw variables of a result against the separation, or whatever else its path controls, or another variable.
 
@@ -44,23 +77,21 @@ def draw_law(
     the result has its curve. Of a single cell realisations are thin lines, and where they are many, nine tenths of them
     a band. The stiffness where contacts detach is a median with a band of two thirds. Unloading is dashed. The cells of
     a sweep have a colour each. The expected law is thin and dark, theory curves are dotted. A point is the mean
-    pull-off; separations at which the law is not to be trusted are grey. The title says how far it can be trusted.
-    StoreError if no run was computed, or a variable is missing.
+    pull-off; separations at which the law is not to be trusted are grey. The title says how far it can be trusted,
+    after a ``note`` on the part of a sweep that is drawn. StoreError if no run was computed, or a variable is missing.
     """
-    from roughmdr.pictures.figure import Figure
-
     if not result.done.any():
         raise StoreError("there is nothing to draw: no run was computed")
-    against = drawn_against(result, options.x)
+    against = drawn_against(result, request.x)
     names = [name for name in names if name != against] or names
     cells = result.cells
     columns = min(2, len(names))
     rows = -(-len(names) // columns)
-    figure = Figure(figsize=(5.4 * columns, 3.7 * rows + 1.3), layout="constrained")
+    figure = new_figure(5.4 * columns, 3.7 * rows + 1.3)
     axes = figure.subplots(rows, columns, squeeze=False)
     overlays = list(dict.fromkeys(line.label for line in lines))
     palette = list(BRANCH_COLOURS.values()) if len(cells) == 1 else colours(len(cells))
-    x = Quantity.of(result, against, per_area=options.per_area)
+    x = Quantity.of(result, against, per_area=request.per_area)
 
     def style_of(line: OverlayLine) -> dict[str, Any]:
         return _overlay_style(line.label, overlays, None if len(cells) == 1 else palette[line.cell])
@@ -68,23 +99,23 @@ def draw_law(
     marked, trusted = False, _trusted(result, against)
     shaded = bool(np.isfinite(trusted))
     for ax, name in zip(axes.flat, names, strict=False):
-        quantity = Quantity.of(result, name, per_area=options.per_area)
+        quantity = Quantity.of(result, name, per_area=request.per_area)
         curves = list(curves_of(result, quantity, x))
         over = [
             (x.in_cell(line.x, cells[line.cell]), quantity.in_cell(line.values, cells[line.cell]), style_of(line))
             for line in lines
             if line.variable == name
         ]
-        marks = [] if options.log else _pull_offs(result, quantity, against, palette)
+        marks = [] if request.log else _pull_offs(result, quantity, against, palette)
         marked = marked or bool(marks)
         styles = [_style(curve, palette, len(cells)) for curve in curves]
-        draw_panel(ax, Panel(quantity, x, curves, styles, over, marks, trusted, options.log, len(cells)))
+        draw_panel(ax, Panel(quantity, x, curves, styles, over, marks, trusted, request.log, len(cells)))
     for ax in axes.flat[len(names) :]:
         ax.set_visible(False)
     _add_legend(figure, result, _entries(result, names, marked=marked, shaded=shaded), overlays, palette)
     told = _realizations(result) + (", unloading dashed" if len(cells) > 1 else "")
-    notes = [options.note, told, f"model: {dict(trust_of_result(result))['trust']}"]
-    set_title(figure, result.attrs["title"], [note for note in notes if note])
+    notes = [note, told, f"model: {dict(trust_of_result(result))['trust']}"]
+    set_title(figure, result.attrs["title"], [each for each in notes if each])
     return figure
 
 
@@ -123,7 +154,7 @@ def _overlay_style(label: str, overlays: list[str], colour: str | None) -> dict[
     if label == REFERENCE:
         return {"color": dark, "ls": (0, (4.0, 2.0)), "lw": 1.2, **around}
     number = overlays.index(label)
-    shown = THEORY_COLOURS[number % len(THEORY_COLOURS)] if colour is None else colour
+    shown = _THEORY_COLOURS[number % len(_THEORY_COLOURS)] if colour is None else colour
     return {"color": shown, "ls": (0, (1.0, 1.0 + 0.5 * number)), "lw": 2.0, **around}
 
 
@@ -193,18 +224,14 @@ def _add_colour_bar(figure: "Figure", result: ResultView, palette: Sequence[str]
     bar = figure.colorbar(mapped, ax=figure.axes, shrink=0.8, aspect=40, pad=0.02)
     shown = np.unique(np.linspace(0, len(palette) - 1, 6).astype(int))
     if coordinate is None:
-        bar.set_ticks(list(map(float, shown)), labels=[str(number) for number in shown])
-        bar.set_label(f"cells of {', '.join(result.sweep)}, the last key fastest")
-        return
-    name, values = coordinate
-    if values.values.dtype.kind in "if":
-        scale = Scale.of(values.values, name, str(values.attrs.get("units", "1")))
-        labels = [f"{scale(value):.3g}" for value in values.values[shown]]
-        bar.set_label(scale.label)
+        label, labels = f"cells of {', '.join(result.sweep)}, the last key fastest", list(map(str, shown))
+    elif (values := coordinate[1].values).dtype.kind in "if":
+        scale = Scale.of(values, coordinate[0], str(coordinate[1].attrs.get("units", "1")))
+        label, labels = scale.label, [f"{scale(value):.3g}" for value in values[shown]]
     else:
-        labels = [str(value) for value in values.values[shown]]
-        bar.set_label(name.replace("_", " "))
+        label, labels = coordinate[0].replace("_", " "), list(map(str, values[shown]))
     bar.set_ticks(list(map(float, shown)), labels=labels)
+    bar.set_label(label)
 
 
 def _only_coordinate(result: ResultView) -> tuple[str, Array] | None:

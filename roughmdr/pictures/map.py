@@ -1,7 +1,7 @@
 """The asperities of a realisation from above, to scale, with the force of each contact; or of an ensemble alone."""
 
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple, Unpack
 
 import numpy as np
 
@@ -10,8 +10,9 @@ from roughmdr.ensemble.maps.height_map import HeightMap
 from roughmdr.errors import StoreError
 from roughmdr.interaction.placed import sides_of
 from roughmdr.numerics.arguments import Floats
+from roughmdr.pictures.request import Place
 from roughmdr.pictures.snapshot import Snapshot
-from roughmdr.pictures.style import COLOUR_MAP, Scale, in_words, set_title
+from roughmdr.pictures.style import COLOUR_MAP, Scale, in_words, new_figure, set_title
 from roughmdr.result.view import ResultView
 
 if TYPE_CHECKING:
@@ -56,27 +57,20 @@ class Frame(NamedTuple):
         return _MIN_RADIUS / (72.0 * _SIDE) * max(self.width, self.height)
 
 
-def draw_map(
-    result: ResultView,
-    file: Path | None = None,
-    *,
-    cell: tuple[int, ...] | None = None,
-    realization: int = 0,
-    step: int | None = None,
-) -> "Figure":
+def draw_map(result: ResultView, file: Path | None = None, **place: Unpack[Place]) -> "Figure":
     """Draw the contacts of a realisation at a step to scale, each in the colour of its force, over the map they are on.
 
     By default the first step at which the flat is closest, in the first cell; ``file`` is that of the result, if any.
     Asperities without contact, the highest of them, are dots. Errors as ``Snapshot.of``.
     """
-    now = Snapshot.of(result, file, cell=cell, realization=realization, step=step, placed=True)
+    now = Snapshot.of(result, file, placed=True, **place)
     ensemble, contacts = now.ensemble, now.contacts
     _check_placed(ensemble)
     on = np.flatnonzero(contacts.active)
     on = on[np.argsort(-contacts.radius[on], kind="stable")]  # large ones first, so that small ones are not hidden
     others = np.flatnonzero(~contacts.active)
     frame = Frame.of(ensemble, 2.0 * float(contacts.radius.max()))
-    surface = now.scene.asperities.height_map(now.scene.seed, realization)
+    surface = now.scene.asperities.height_map(now.scene.seed, place.get("realization", 0))
     figure, ax, length = _start(frame, 0.0 if surface is None else _BAR)
     if surface is not None:
         _draw_surface(figure, ax, surface, length)
@@ -121,11 +115,9 @@ def _check_placed(ensemble: Ensemble) -> None:
 
 def _start(frame: Frame, more: float) -> "tuple[Figure, Axes, Scale]":
     """Return an empty figure of a frame, ``more`` inches taller, its axes, and the scale of lengths."""
-    from roughmdr.pictures.figure import Figure
-
     aspect = frame.height / frame.width
     tall = min(_SIDE * aspect, _SIDE) if aspect >= 0.2 else 0.2 * _SIDE
-    figure = Figure(figsize=(_WIDTH, tall + more + 1.6), layout="constrained")
+    figure = new_figure(_WIDTH, tall + more + 1.6)
     ax = figure.subplots()
     x, y = (Scale.of([max(frame.width, frame.height)], name, "m") for name in "xy")
     ax.set(

@@ -19,15 +19,6 @@ _SPRINGS = 13  # springs within that radius
 _INSIDE = 1.0 - 1e-12  # largest radius that is drawn, over the limit of a profile
 
 
-class Springs(NamedTuple):
-    """The row of springs on both sides of the axis."""
-
-    x: Floats
-    """Positions [m]."""
-    end: Floats
-    """Height of their ends above the undeformed surface [m]; 0 for free ones."""
-
-
 class Pressure(NamedTuple):
     """The pressure from the axis outwards."""
 
@@ -96,8 +87,10 @@ class OneContact(NamedTuple):
         with warnings.catch_warnings(action="ignore", category=LimitWarning):
             return r, -surface_displacement(self.shape, r=r, **self._arguments()).to_numpy()
 
-    def springs(self) -> Springs:
-        """Return the row of springs (H 18, 32); within the cohesive zone they are lifted by the attraction."""
+    def springs(self) -> tuple[Floats, Floats]:
+        """Return the row of springs on both sides (H 18, 32): positions, and heights of their ends above the undeformed
+        surface [m]; 0 for free ones. Within the cohesive zone they are lifted by the attraction.
+        """
         reach, a = self.state.reach, self.state.radius
         spacing = reach / _SPRINGS
         x = np.asarray(spacing * (np.arange(int(WIDTH * _SPRINGS)) + 0.5), dtype=np.float64)
@@ -105,7 +98,7 @@ class OneContact(NamedTuple):
         if self.state.zone is not None:
             zone = (x >= a) & (x < reach)
             end[zone] = self.state.zone.pull * np.sqrt(reach * reach - x[zone] ** 2)
-        return Springs(np.append(-x[::-1], x), np.append(end[::-1], end))
+        return np.append(-x[::-1], x), np.append(end[::-1], end)
 
     def pressure(self) -> Pressure:
         """Return the pressure, on points that are denser towards the edge of the contact."""

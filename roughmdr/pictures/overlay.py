@@ -10,7 +10,7 @@ from roughmdr.batch.plan import Cell, Plan, make_plan
 from roughmdr.batch.realization import simulate_realization
 from roughmdr.errors import RoughmdrError, StoreError
 from roughmdr.numerics.arguments import Floats
-from roughmdr.pictures.lines import EXPECTED, Overlay, OverlayLine
+from roughmdr.pictures.law import EXPECTED, Overlay, OverlayLine
 from roughmdr.pictures.theory_curves import THEORY_CURVES, TheoryCurve
 from roughmdr.result.view import ResultView
 from roughmdr.scene import read

@@ -108,9 +108,7 @@ def _draw_bands(ax: "Axes", curve: Curve, colour: str, scales: tuple[Scale, Scal
             ax.fill_between(x, scale(low), scale(high), color=colour, alpha=0.12, lw=0, zorder=1)
         some = np.unique(np.linspace(0, count - 1, shown).astype(int))
         drawn = x_scale(curve.runs_x.some(some)).T, scale(curve.runs.some(some)).T
-        lines = ax.plot(*drawn, color=colour, lw=0.3, alpha=0.25)
-        for line in lines:
-            line.set_zorder(1.2)
+        ax.plot(*drawn, color=colour, lw=0.3, alpha=0.25, zorder=1.2)
     ax.fill_between(x, scale(curve.low), scale(curve.high), color=colour, alpha=0.3, lw=0, zorder=1.5)
 
 

@@ -4,7 +4,7 @@ import os
 from collections.abc import Mapping
 from dataclasses import dataclass, field, fields
 from pathlib import Path
-from typing import TYPE_CHECKING, Literal, NamedTuple
+from typing import TYPE_CHECKING, Literal, NamedTuple, TypedDict
 
 from roughmdr.errors import RoughmdrError, StoreError
 from roughmdr.fitting.stored import as_fit
@@ -45,6 +45,14 @@ class Picture(NamedTuple):
 
     figure: "Figure"
     remarks: list[tuple[str, str]]
+
+
+class Place(TypedDict, total=False):
+    """A step of a realisation of a cell."""
+
+    cell: tuple[int, ...]
+    realization: int
+    step: int | None
 
 
 @dataclass(frozen=True)

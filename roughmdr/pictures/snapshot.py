@@ -15,7 +15,7 @@ from roughmdr.pictures.style import in_words
 from roughmdr.result.view import ResultView
 from roughmdr.scene import Scene, read
 from roughmdr.schema.wording import short_repr
-from roughmdr.variables import DONE, SEPARATION
+from roughmdr.variables import SEPARATION
 
 _RTOL = 1e-6  # difference of the forces of contacts and curve, over the largest of the curve, that is allowed
 _FAR = 1e3  # height above the path, over its depth, at which no contact is left
@@ -91,12 +91,11 @@ class Snapshot(NamedTuple):
 
 def _check_realization(result: ResultView, cell: tuple[int, ...], realization: int) -> None:
     """Raise StoreError unless a realisation of a cell was computed."""
-    status = result.variables["status"]
-    kept = "realization" in status.dims
+    kept = result.keeps_runs
     count = result.sizes["realization"] if kept else int(result.variables["realization_count"].values[cell])
     if not 0 <= realization < count:
         raise StoreError(f"realization is {realization}; the result has realisations 0 to {count - 1}")
-    if status.values[(*cell, realization) if kept else cell] != DONE:
+    if not result.done[(*cell, realization) if kept else cell]:
         raise StoreError(f"realization is {realization}, which was not computed in this cell")
 
 

@@ -21,7 +21,6 @@ if TYPE_CHECKING:
 
 BRANCH_COLOURS = {"loading": "#0072b2", "unloading": "#d55e00"}
 """Colours that are distinct for the colour-blind: M. Okabe, K. Ito, Color universal design (2008)."""
-THEORY_COLOURS = ("#009e73", "#e69f00", "#cc79a7", "#56b4e9", "#8c564b")
 BRANCH_LINESTYLES = {"loading": "-", "unloading": "--"}
 COLOUR_MAP = "viridis"
 _LETTERS_PER_INCH = 12.0  # letters of a title per inch
@@ -76,6 +75,13 @@ def colours(count: int) -> list[str]:
     on_dark = sum(to_rgb(rcParams["text.color"])) > 1.5
     first, last = (0.3, 1.0) if on_dark else (0.0, 0.92)
     return [to_hex(colormaps[COLOUR_MAP](each)) for each in np.linspace(first, last, count)]
+
+
+def new_figure(width: float, height: float) -> "Figure":
+    """Return an empty figure of a size [inches], whose parts will make room for each other."""
+    from roughmdr.pictures.figure import Figure
+
+    return Figure(figsize=(width, height), layout="constrained")
 
 
 def set_title(figure: "Figure", title: str, notes: Sequence[str] = ()) -> None:

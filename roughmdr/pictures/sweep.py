@@ -8,7 +8,7 @@ from roughmdr.errors import StoreError
 from roughmdr.numerics.arguments import Floats
 from roughmdr.pictures.number import Number, number_of
 from roughmdr.pictures.request import Request
-from roughmdr.pictures.style import BRANCH_COLOURS, COLOUR_MAP, Scale, set_title
+from roughmdr.pictures.style import BRANCH_COLOURS, COLOUR_MAP, Scale, new_figure, set_title
 from roughmdr.result.trust import pull_off_error_of, trust_of_result
 from roughmdr.result.view import ResultView
 from roughmdr.schema.wording import escape_controls, suggestion
@@ -74,7 +74,7 @@ def _is_even(values: Floats) -> bool:
     return values.size < 3 or bool(np.ptp(steps) <= _EVEN * np.abs(steps).max())
 
 
-def draw_sweep(result: ResultView, request: Request, note: str = "") -> "Figure":
+def draw_sweep(result: ResultView, note: str, request: Request) -> "Figure":
     """Draw a number of each cell of a sweep against its swept keys.
 
     The number is a variable of the result, the pull-off force where there is one unless it is named; of a law where
@@ -82,8 +82,6 @@ def draw_sweep(result: ResultView, request: Request, note: str = "") -> "Figure"
     logarithmic axis unless ``request.log`` says otherwise, those below 0 turned round. StoreError where nothing was
     swept or computed, where there is no such variable, or where more than three keys were swept.
     """
-    from roughmdr.pictures.figure import Figure
-
     if not result.done.any():
         raise StoreError("there is nothing to draw: no run was computed")
     axes = _axes(result, request.x)
@@ -98,7 +96,7 @@ def draw_sweep(result: ResultView, request: Request, note: str = "") -> "Figure"
     if request.log and not (mean[np.isfinite(mean)] > 0.0).all():
         raise StoreError("log does not go with these numbers: some are not above 0")
     if len(axes) == 1:
-        figure = Figure(figsize=(6.4, 4.8), layout="constrained")
+        figure = new_figure(6.4, 4.8)
         _draw_points(figure.subplots(), axes[0], mean, error, scale.label)
         if log:
             figure.axes[0].set_yscale("log")
@@ -106,7 +104,7 @@ def draw_sweep(result: ResultView, request: Request, note: str = "") -> "Figure"
         panels = 1 if len(axes) == _FLAT else min(_MAX_PANELS, axes[_FLAT].places.size)
         columns = min(panels, 3)
         size = (2.2 + 4.4 * columns, 5.2) if panels == 1 else (2.2 + 3.4 * columns, 1.6 + 2.9 * -(-panels // columns))
-        figure = Figure(figsize=size, layout="constrained")
+        figure = new_figure(*size)
         _draw_maps(figure, axes, mean, error, scale.label, log=log)
     together = _swept_together(result, axes[0].name)
     notes = [note, together, _words(result, number, scale), _model_note(result, number)]

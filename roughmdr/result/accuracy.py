@@ -33,16 +33,11 @@ def reached(
     return errors.tolist(), text, _choice_warnings(plan.choice, methods, failed, accuracy.max_realizations)
 
 
-def _values(result: ResultView, name: str, step: int) -> Floats:
-    """Return the mean of a variable over the realisations at a step, in each cell."""
-    return np.asarray(result.mean(name)[0][..., step]).ravel()
-
-
 def _choice_in_words(choice: Choice, result: ResultView, errors: Floats, methods: Sequence[CellMethod]) -> str:
     """Return what was chosen, and the quantity of each cell with its whole error, or the range of both."""
-    values, counts = _values(result, choice.variable, choice.step), [each.realizations for each in methods]
+    values, counts = result.mean(choice.variable)[0][..., choice.step], [each.realizations for each in methods]
     unit, most = LAW_VARIABLES[choice.variable].units, float(np.fmax.reduce(errors))
-    found = format_quantity(float(np.fmin.reduce(values)), unit, to=float(np.fmax.reduce(values)))
+    found = format_quantity(float(np.fmin.reduce(values, axis=None)), unit, to=float(np.fmax.reduce(values, axis=None)))
     number = f"{max(counts)} realisation{'s' * (max(counts) > 1)}"
     within = "error not known" if np.isnan(most) else f"within {choice.of.error_in_words(most)}"
     return "\n".join([*choice.lines, f"reached: {found} {within}, by {number}"])

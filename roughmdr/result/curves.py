@@ -1,6 +1,7 @@
 """The curves of a result as arrays of xarray, which may be in chunks, and those that follow from others."""
 
-from typing import TYPE_CHECKING, NamedTuple
+from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -9,15 +10,7 @@ from roughmdr.errors import StoreError
 from roughmdr.numerics.arguments import Ints
 from roughmdr.result.view import ResultView
 from roughmdr.schema.wording import short_repr, suggestion
-from roughmdr.variables import (
-    BRANCHES,
-    CURVE_VARIABLES,
-    LAW_VARIABLES,
-    OVER_AREA,
-    REFERENCE_VARIABLES,
-    SEPARATION,
-    STEP_COORDINATES,
-)
+from roughmdr.variables import BRANCHES, CURVE_VARIABLES, LAW_VARIABLES, OVER_AREA, STEP_COORDINATES
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -58,24 +51,24 @@ def stored_curves(result: ResultView) -> list[str]:
     return [name for name in names if name in result.variables and "step" in result.variables[name].dims]
 
 
-def curve(result: ResultView, name: str, asked: str) -> "xr.DataArray":
+def curve(result: ResultView, name: str, asked: str = "ds.roughmdr needs") -> "xr.DataArray":
     """Return a variable over the steps, or its mean, computed from another where the result does not hold it.
 
     StoreError where it holds neither; ``asked`` are the words before the name in its message, such as "x is".
     """
     dataset = result.dataset
-    for held in (name, f"{name}_mean"):
-        if held in dataset.variables and "step" in dataset[held].dims:
-            return alone(whole(dataset[held]))
+    if held := _held(dataset, name):
+        array = dataset[held]  # without coordinates over the steps, as one may have the name of a new dimension
+        return array.drop_vars([each for each, coordinate in array.coords.items() if "step" in coordinate.dims])
     if name in PER_AREA and "nominal_area" in dataset:
         total = curve(result, PER_AREA[name], asked)
-        return (total / alone(dataset["nominal_area"])).assign_attrs(LAW_VARIABLES[name].attrs)
-    if name == "force" and _holds(dataset, "pressure") and "nominal_area" in dataset:
-        total = curve(result, "pressure", asked) * alone(dataset["nominal_area"])
+        return (total / dataset["nominal_area"]).assign_attrs(LAW_VARIABLES[name].attrs)
+    if name == "force" and _held(dataset, "pressure") and "nominal_area" in dataset:
+        total = curve(result, "pressure", asked) * dataset["nominal_area"]
         return total.assign_attrs(CURVE_VARIABLES[name].attrs)
     held_names = [each.removesuffix("_mean") for each in stored_curves(result)]
     allowed = list(dict.fromkeys([*held_names, result.control]))
-    if name in PER_AREA and "nominal_area" not in dataset and _holds(dataset, PER_AREA[name]):
+    if name in PER_AREA and "nominal_area" not in dataset and _held(dataset, PER_AREA[name]):
         raise StoreError(
             f"{asked} {name!r}: from {PER_AREA[name]} only with nominal_area, which this result does not hold"
         )
@@ -84,25 +77,34 @@ def curve(result: ResultView, name: str, asked: str) -> "xr.DataArray":
     raise StoreError(f"{asked} {short_repr(name)}, no variable of a result{suggestion(str(name), allowed)}")
 
 
-def separation_of(result: ResultView) -> "xr.DataArray":
-    """Return the separation [m] over the steps, a coordinate or a variable."""
-    return curve(result, SEPARATION.name, "ds.roughmdr needs")
+def apply(
+    function: Callable[..., Any],
+    *arrays: "xr.DataArray",
+    core: Sequence[Sequence[str]],
+    out: Sequence[Sequence[str]],
+    **keywords: object,
+) -> "tuple[xr.DataArray, ...]":
+    """Return what a function of numbers gives of arrays, lazily where these are in chunks; all of one type.
 
+    ``core`` are the last dimensions of each array that it takes, and ``out`` of each that it returns.
+    """
+    import xarray as xr
 
-def alone(array: "xr.DataArray") -> "xr.DataArray":
-    """Return an array without coordinates over the steps, as one may have the name of a new dimension."""
-    over_steps = [name for name, each in array.coords.items() if "step" in each.dims]
-    return array.drop_vars(over_steps)
-
-
-def whole(array: "xr.DataArray") -> "xr.DataArray":
-    """Return an array with its steps in one chunk, if it is in chunks."""
-    return array if array.chunks is None else array.chunk(step=-1)
-
-
-def is_reference(name: str) -> bool:
-    """Return whether a curve is of the reference by boundary elements."""
-    return name.removesuffix("_mean") in REFERENCE_VARIABLES
+    whole = (
+        array if array.chunks is None else array.chunk(dict.fromkeys(dims, -1))
+        for array, dims in zip(arrays, core, strict=True)
+    )
+    found = xr.apply_ufunc(
+        function,
+        *whole,
+        kwargs=keywords,
+        input_core_dims=core,
+        output_core_dims=out,
+        keep_attrs=False,
+        dask="parallelized",
+        output_dtypes=[arrays[0].dtype] * len(out),
+    )
+    return found if len(out) > 1 else (found,)
 
 
 class Read(NamedTuple):
@@ -129,5 +131,7 @@ class Branch:
             raise StoreError(f"branch is {branch!r}; the path of this result has no {branch}")
 
 
-def _holds(dataset: "xr.Dataset", name: str) -> bool:
-    return any(each in dataset.variables and "step" in dataset[each].dims for each in (name, f"{name}_mean"))
+def _held(dataset: "xr.Dataset", name: str) -> str:
+    """Return the name under which a dataset holds a curve or its mean; empty where it holds neither."""
+    held = (each for each in (name, f"{name}_mean") if each in dataset.variables and "step" in dataset[each].dims)
+    return next(held, "")

@@ -21,11 +21,11 @@ def given_result(result: "str | Path | xr.Dataset") -> tuple[ResultView, Path | 
 
     A UserWarning tells the caller of a public function where the numbers in a file cannot be trusted.
     """
-    if not isinstance(result, str | os.PathLike) and hasattr(result, "data_vars"):
+    if isinstance(result, str | os.PathLike):
+        view = ResultView(read_result(Path(result)))
+        if view.doubt:
+            warnings.warn(f"{result}: {view.doubt}", UserWarning, stacklevel=level_outside())
+        return view, Path(result)
+    if hasattr(result, "data_vars"):
         return ResultView(as_result(Labelled.of(result))), None
-    if not isinstance(result, str | os.PathLike):
-        raise StoreError(f"result is {short_repr(result)}; it must be a path or a Dataset as roughmdr.run returns it")
-    view = ResultView(read_result(Path(result)))
-    if view.doubt:
-        warnings.warn(f"{result}: {view.doubt}", UserWarning, stacklevel=level_outside())
-    return view, Path(result)
+    raise StoreError(f"result is {short_repr(result)}; it must be a path or a Dataset as roughmdr.run returns it")

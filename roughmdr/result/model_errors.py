@@ -11,7 +11,7 @@ import numpy as np
 from roughmdr.model_error.at_given import ALWAYS, FORCES, NUMBERS, STATED, errors_at, first_of, largest_at_force
 from roughmdr.model_error.parts import PLASTIC, PLASTIC_AT_FORCE
 from roughmdr.numerics.arguments import Floats
-from roughmdr.result.curves import Read
+from roughmdr.result.curves import Read, apply
 from roughmdr.result.view import Leg, ResultView, parts_of
 from roughmdr.storage.labelled import Array
 from roughmdr.variables import LATERAL, LAW_VARIABLES, MODEL_ERROR, ORIGINS, SEPARATION, WITH_MODEL_ERROR
@@ -48,8 +48,6 @@ def errors_there(
     read: Mapping[str, Read],
 ) -> "dict[str, xr.DataArray]":
     """Return the errors of curves that are ``read`` where a quantity is ``given``."""
-    import xarray as xr
-
     labels = known_in(result, curves)
     if not labels:
         return {}
@@ -62,20 +60,14 @@ def errors_there(
         found = dataset.get(name, np.nan * dataset["interaction_error"])
         return found.where(read[LOADS].value == 1.0) if name in PLASTIC_AT_FORCE and LOADS in read else found
 
-    errors = xr.apply_ufunc(
-        errors_at,
+    numbers = [
         *(read[name].value if name in read else unknown for name in ("contact_fraction", STATED)),
-        largest,
-        tension,
+        *(largest, tension),
         *(read[name].value for name in names),
         *(read[name].rise for name in names),
         *map(number, NUMBERS),
-        kwargs={"names": names, "given": given},
-        output_core_dims=[[]] * len(labels),
-        keep_attrs=False,
-        dask="parallelized",
-        output_dtypes=[np.float64] * len(labels),
-    )
+    ]
+    errors = apply(errors_at, *numbers, core=[[]] * len(numbers), out=[[]] * len(labels), names=names, given=given)
     return {
         label: error.assign_attrs(attributes(name, given))
         for label, name, error in zip(labels, names, errors, strict=True)
@@ -110,8 +102,7 @@ def errors_along(result: ResultView) -> dict[str, Array]:
     known = np.where(np.isnan(curves[names.index(_H)]), np.nan, 1.0)  # both of a step, so that changes go together
     changes = [_changes(known * each, result.legs) for each in curves]
     h = curves[names.index(_H)]
-    before = np.fmin.accumulate(np.insert(h, 0, np.inf, axis=-1), axis=-1)[..., :-1]
-    lower = np.where(h < before, 1.0, np.nan)
+    lower = np.where(_lowest_so_far(h), 1.0, np.nan)
     numbers = [values(name) * (lower if name in PLASTIC_AT_FORCE else 1.0) for name in NUMBERS]
     if "asperity_origin" not in held:  # in earlier versions the overlap of coupled hills alone is not known
         of_hills = np.isnan(values("overlap_fraction"))
@@ -128,8 +119,12 @@ def errors_along(result: ResultView) -> dict[str, Array]:
 
 def lowest_so_far(separation: "xr.DataArray") -> "xr.DataArray":
     """Return 1 at the steps where the flat is lower than ever before, 0 at others."""
-    lowest = separation.reduce(np.fmin.accumulate, "step", keep_attrs=False)
-    return (separation < lowest.shift(step=1, fill_value=np.inf)).astype(np.float64)
+    return apply(_lowest_so_far, separation, core=[["step"]], out=[["step"]])[0]
+
+
+def _lowest_so_far(separation: Floats) -> Floats:
+    before = np.fmin.accumulate(np.insert(separation, 0, np.inf, axis=-1), axis=-1)[..., :-1]
+    return (separation < before).astype(np.float64)
 
 
 def largest_of_result(result: ResultView, cell: tuple[int, ...] = ()) -> dict[str, float]:

@@ -31,11 +31,8 @@ def pull_off_numbers(
     found, done = collected.pull_offs, collected.diagnostics["status"] == DONE
     if plan.keeps_statistics:
         mean_force, dims = None if force is None else collected.values["mean"][:, force], swept
-        mean_lowest, count, all_done = (
-            found[:, MEAN, 0],
-            found[:, COUNT, 0],
-            np.array([float(each.realizations) for each in methods]),
-        )
+        mean_lowest, count = found[:, MEAN, 0], found[:, COUNT, 0]
+        all_done = np.array([float(each.realizations) for each in methods])
         numbers = {
             f"{name}_{statistic}": values
             for number, name in enumerate(PULL_OFF_NUMBERS)

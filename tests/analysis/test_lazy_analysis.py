@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 import xarray as xr
 from dask.callbacks import Callback
-from scenes import scene
+from scenes import ASPERITIES, scene
 
 import roughmdr as rm
 
@@ -57,6 +57,15 @@ def test_it_stays_lazy_and_computes_to_the_same_bits(method: str, curves: xr.Dat
     for name in eager.data_vars:
         np.testing.assert_array_equal(computed[name].values, eager[name].values, err_msg=str(name))
         assert computed[name].attrs.keys() == eager[name].attrs.keys()
+
+
+def test_contacts_that_yield_are_read_in_chunks_too() -> None:
+    path = {"separation": {"start": "clear", "stop": "1 sigma", "steps": 20}, "unload": True}
+    sections = {"asperities": {**ASPERITIES, "count": 100}, "plasticity": {"yield_strength": "50 MPa"}}
+    result = rm.run(scene(path=path, adhesion=None, batch={"realizations": 2}, **sections))
+    read = result.chunk(realization=1, step=7).roughmdr.at_force("20 uN", branch="unloading")
+    assert read.stiffness.chunks is not None
+    xr.testing.assert_identical(read.compute(), result.roughmdr.at_force("20 uN", branch="unloading"))
 
 
 _MEASURE = """
