@@ -7,7 +7,6 @@ from typing import NamedTuple
 
 from roughmdr.batch.choose import plan_scene
 from roughmdr.batch.plan import Plan
-from roughmdr.batch.resume.kept import read_kept
 from roughmdr.batch.resume.keys import versions
 from roughmdr.batch.resume.share import Share
 from roughmdr.batch.resume.store import CheckpointStore, locked_store
@@ -102,7 +101,7 @@ def _common_scene(stores: list[CheckpointStore]) -> str:
 
 def _check_complete(beginning: Beginning, target: Path, total: int, stores: list[CheckpointStore]) -> None:
     """Raise StoreError, which names the shares and how they are computed, unless all runs are there or have failed."""
-    failed = set[tuple[str, int]]().union(*(read_kept(store.folder).failed for store in stores))
+    failed = set[tuple[str, int]]().union(*(store.failed for store in stores))
     ranges = Rounds(beginning.plan).begin()
     missing = beginning.missing(ranges, [])
     lacking = {(each.key, run) for each in missing for run in range(each.first, each.last)} - failed
