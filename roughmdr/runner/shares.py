@@ -103,7 +103,7 @@ def _check_complete(beginning: Beginning, target: Path, total: int, stores: list
     """Raise StoreError, which names the shares and how they are computed, unless all runs are there or have failed."""
     failed = set[tuple[str, int]]().union(*(store.failed for store in stores))
     ranges = Rounds(beginning.plan).begin()
-    missing = beginning.missing(ranges, [])
+    missing = beginning.reusable.missing(ranges, [])
     lacking = {(each.key, run) for each in missing for run in range(each.first, each.last)} - failed
     if not lacking:
         return
