@@ -25,48 +25,39 @@ _OF_FOURTH = 0.5  # error of the derivative over the fourth difference: 0.25 at 
 _MACHINE = "path.machine_stiffness"
 
 
-class Derivatives(NamedTuple):
-    """Derivatives of the variables of a plan, as arrays, and what has none."""
+def derivatives_of(plan: Plan) -> tuple[dict[str, Array], dict[str, Array], list[str]]:
+    """Return the derivatives of the variables of a plan, keys and units of the parameters, and warnings.
 
-    variables: dict[str, Array]
-    """Over the swept keys, ``parameter`` and, where the variable has them, steps; each with its error."""
-    coordinates: dict[str, Array]
-    """Keys and units of the parameters."""
-    warnings: list[str]
-
-    @classmethod
-    def of(cls, plan: Plan) -> "Derivatives":
-        """Return them; NaN in cells where a law has none.
-
-        They are exact to about 1e-9 of what a change by the number itself makes, and less where contacts are made or
-        lost nearby, as their errors tell.
-        """
-        keys, names, steps = plan.scene.output.derivatives, plan.variables, plan.steps
-        found = np.full((len(plan.cells), len(keys), 2, len(names) * steps + len(PULL_OFF_NUMBERS)), np.nan)
-        failures = list[str]()
-        for number, cell in enumerate(plan.cells):
-            try:
-                found[number] = _derivatives(cell, names, keys)
-            except RoughmdrError as error:
-                failures.append(f"{plan.name_of(number, 0)}: {error}")
-        found = found.reshape(*plan.sizes.values(), *found.shape[1:])
-        declared = {name: LAW_VARIABLES[name] for name in names} | (PULL_OFF_NUMBERS if plan.unloads else {})
-        dims, variables, first = (*plan.sizes, "parameter"), dict[str, Array](), 0
-        for name, variable in declared.items():
-            count = steps if name in names else 1
-            for row, (ending, words) in enumerate({DERIVATIVE: "", DERIVATIVE_ERROR: "error of the "}.items()):
-                about = f"{words}derivative of the {variable.long_name}, with respect to a number of the scene, in SI"
-                values, attrs = found[..., row, first : first + count], {"long_name": about}
-                over = Array((*dims, "step"), values, attrs) if name in names else Array(dims, values[..., 0], attrs)
-                variables[f"{name}{ending}"] = over
-            first += count
-        units = [spelled_in_results(_number(plan.cells[0], key).unit) for key in keys]
-        coordinates = {
-            "parameter": Array(("parameter",), np.array(keys), {"long_name": "key of the number in the scene"}),
-            "parameter_unit": Array(("parameter",), np.array(units), {"long_name": "unit of the number"}),
-        }
-        told = f"no derivatives of {len(failures)} of {len(plan.cells)} cells: " if failures else ""
-        return cls(variables, coordinates, [f"{told}{failures[0]}"] if failures else [])
+    They lie over the swept keys, ``parameter`` and, where the variable has them, steps, each with its error; NaN in
+    cells where a law has none. They are exact to about 1e-9 of what a change by the number itself makes, and less where
+    contacts are made or lost nearby, as their errors tell.
+    """
+    keys, names, steps = plan.scene.output.derivatives, plan.variables, plan.steps
+    found = np.full((len(plan.cells), len(keys), 2, len(names) * steps + len(PULL_OFF_NUMBERS)), np.nan)
+    failures = list[str]()
+    for number, cell in enumerate(plan.cells):
+        try:
+            found[number] = _derivatives(cell, names, keys)
+        except RoughmdrError as error:
+            failures.append(f"{plan.name_of(number)}: {error}")
+    found = found.reshape(*plan.sizes.values(), *found.shape[1:])
+    declared = {name: LAW_VARIABLES[name] for name in names} | (PULL_OFF_NUMBERS if plan.unloads else {})
+    dims, variables, first = (*plan.sizes, "parameter"), dict[str, Array](), 0
+    for name, variable in declared.items():
+        count = steps if name in names else 1
+        for row, (ending, words) in enumerate({DERIVATIVE: "", DERIVATIVE_ERROR: "error of the "}.items()):
+            about = f"{words}derivative of the {variable.long_name}, with respect to a number of the scene, in SI"
+            values, attrs = found[..., row, first : first + count], {"long_name": about}
+            over = Array((*dims, "step"), values, attrs) if name in names else Array(dims, values[..., 0], attrs)
+            variables[f"{name}{ending}"] = over
+        first += count
+    units = [spelled_in_results(_number(plan.cells[0], key).unit) for key in keys]
+    coordinates = {
+        "parameter": Array(("parameter",), np.array(keys), {"long_name": "key of the number in the scene"}),
+        "parameter_unit": Array(("parameter",), np.array(units), {"long_name": "unit of the number"}),
+    }
+    told = f"no derivatives of {len(failures)} of {len(plan.cells)} cells: " if failures else ""
+    return variables, coordinates, [f"{told}{failures[0]}"] if failures else []
 
 
 class _Number(NamedTuple):

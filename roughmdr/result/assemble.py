@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from roughmdr.asperity.validity import ValidityLimits
 from roughmdr.batch.collect import CollectedResults
-from roughmdr.batch.derivatives import Derivatives
+from roughmdr.batch.derivatives import derivatives_of
 from roughmdr.batch.plan import Plan
 from roughmdr.batch.resume.keys import versions
 from roughmdr.batch.rounds import CellMethod
@@ -98,10 +98,10 @@ def assemble(
         data["accuracy_method"] = of_cells("accuracy_method", [ESTIMATORS.index(each.estimator) for each in methods])
         warnings += more
     if scene.output.derivatives:
-        found = Derivatives.of(plan)
-        data |= found.variables
-        coordinates |= found.coordinates
-        warnings += found.warnings
+        derivatives, parameters, more = derivatives_of(plan)
+        data |= derivatives
+        coordinates |= parameters
+        warnings += more
     if warnings:
         result.attrs["warnings"] = "\n".join(warnings)
     if plan.control in FORCES:

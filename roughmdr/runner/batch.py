@@ -193,7 +193,7 @@ class Batch:
         failed = collected.diagnostics["status"] == FAILED
         if self._collector.none_done:
             error = first_error(str(collected.diagnostics["remark"][failed][0]))
-            name = self._plan.name_of(int(np.argwhere(failed)[0, 0]), 0)
+            name = self._plan.name_of(int(np.argwhere(failed)[0, 0]))
             raise (type(error) if isinstance(error, RoughmdrError) else Unfinished)(f"{name}: {error}")
         result = assemble(self._plan, methods, collected, self._variables, self._command)
         if self._old is not None:
