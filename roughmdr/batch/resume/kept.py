@@ -20,7 +20,6 @@ from roughmdr.errors import RoughmdrError, StoreError
 from roughmdr.scene import Scene, read
 from roughmdr.schema.toml_text import parse_toml
 
-_ENDING = ".parts"
 _HOLDER = re.compile(r"process (\d+) on (.*)")
 _HOLDERS = 4000  # bytes of a lock that are read, which name some hundred runs
 _LOCKS = Path("/proc/locks")
@@ -39,6 +38,8 @@ class Kept(NamedTuple):
     """Finished runs that a folder keeps."""
 
     folder: Path
+    output: Path  # the result that the runs belong to
+    share: Share | None  # the share of the batch that is computed here; None for all of it
     scene: str  # TOML; empty where nothing is kept yet
     versions: str
     command: str  # that began the batch; empty where it is not known
@@ -53,20 +54,6 @@ class Kept(NamedTuple):
     complete: bool  # whether all runs of a share are kept
     holder: Holder | None  # None where no run is at work
     holder_known: bool  # whether that can be told on this system
-
-    @property
-    def output(self) -> Path:
-        """The result that the runs belong to."""
-        return self._target[0]
-
-    @property
-    def share(self) -> Share | None:
-        """The share of the batch that is computed here; None for all of it."""
-        return self._target[1]
-
-    @property
-    def _target(self) -> tuple[Path, Share | None]:
-        return Share.split_name(self.folder.with_name(self.folder.name.removesuffix(_ENDING)))
 
     @property
     def continued_by(self) -> str:
@@ -107,9 +94,10 @@ def read_kept(folder: Path) -> Kept:
         stored.setdefault(runs.key, []).append(runs)
     by_key = Counter({key: _count(ranges) for key, ranges in stored.items()})
     count = by_key.total() if all(file.runs for file in files) else sum(file.realizations for file in files)
+    of = Share.split_name(folder.with_name(folder.name.removesuffix(".parts")))
     begun = manifest.scene, manifest.versions, manifest.command, manifest.began
     failed, complete = (frozenset(manifest.failed), manifest.remark), manifest.complete
-    return Kept(folder, *begun, last, count, by_key, tuple(files), *failed, complete, holder, known)
+    return Kept(folder, *of, *begun, last, count, by_key, tuple(files), *failed, complete, holder, known)
 
 
 def _count(stored: list[Runs]) -> int:
