@@ -105,16 +105,17 @@ class Processes:
 def _computed(
     pool: Executor, workers: int, tasks: Iterator[Task], ended: Callable[[], bool]
 ) -> Iterator[tuple[Task, _Pending]]:
-    """Yield tasks as they are done, while the next are under way; none is begun once they have ``ended``."""
+    """Yield tasks as they are done; none is begun before a result is taken, nor once they have ``ended``."""
     under_way, done = dict[_Pending, Task](), list[tuple[Task, _Pending]]()
     while True:
-        for task in islice(tasks, 0 if ended() else workers - len(under_way)):
+        for task in islice(tasks, 0 if ended() else workers - len(under_way) - len(done)):
             under_way[_submitted(pool, task)] = task
-        while done:
+        if done:
             yield done.pop()
-        if not under_way:
+        elif under_way:
+            done = [(under_way.pop(future), future) for future in wait(under_way, return_when="FIRST_COMPLETED").done]
+        else:
             return
-        done = [(under_way.pop(future), future) for future in wait(under_way, return_when="FIRST_COMPLETED").done]
 
 
 def _submitted(pool: Executor, task: Task) -> _Pending:
