@@ -75,7 +75,7 @@ def seconds(cell: Cell, estimator: str) -> float:
     """
     law = along_seconds(cell, estimator) * _search_factor(cell, estimator)
     law += _jump_seconds(cell) if locates_jumps(cell, estimator) else 0.0
-    return (1 + _LAWS_OF_DERIVATIVE * len(cell.scene.output.derivatives)) * law + beside(cell).seconds
+    return (1 + _LAWS_OF_DERIVATIVE * len(cell.scene.output.derivatives)) * law + beside(cell)[0]
 
 
 def along_seconds(cell: Cell, estimator: str) -> float:
@@ -170,20 +170,14 @@ def paired_seconds(cell: Cell) -> float:
     return _PAIRWISE_BEGIN + np.unique(cell.path.separation).size * each
 
 
-class Beside(NamedTuple):
-    """Time and memory of what stages compute beside the law of a realisation."""
+def beside(cell: Cell, *, finest: bool = False) -> tuple[float, float]:
+    """Return about how long [s] and how much memory [byte] stages take beside the law of a realisation.
 
-    seconds: float
-    """[s]"""
-    memory: float
-    """[byte]"""
-
-
-def beside(cell: Cell, *, finest: bool = False) -> Beside:
-    """Return about what stages take beside the law of a realisation, on the grids they begin with or the ``finest``."""
+    That is on the grids that they begin with, or on the ``finest``.
+    """
     separations = np.unique(cell.path.separation).size
     own = [stage.beside(cell.scene, separations, finest=finest) for stage in cell.scene.stages]
-    return Beside(sum(time for time, _ in own), sum(memory for _, memory in own))
+    return sum(time for time, _ in own), sum(memory for _, memory in own)
 
 
 def file_bytes(plan: Plan, runs: int) -> int:

@@ -26,12 +26,12 @@ _OF_FOURTH = 0.5  # error of the derivative over the fourth difference: 0.25 at 
 _MACHINE = "path.machine_stiffness"
 
 
-def derivatives(plan: Plan) -> tuple[dict[str, Array], dict[str, Array], list[str]]:
-    """Return the derivatives of the variables of a plan, the keys and units of the numbers they are by, and warnings.
+def derivatives_of(plan: Plan) -> tuple[dict[str, Array], dict[str, Array], list[str]]:
+    """Return the derivatives of the variables of a plan, keys and units of the parameters, and warnings.
 
-    Each has the dimensions of the swept keys, ``parameter`` and, where the variable has them, steps, and an error
-    beside it. They are exact to about 1e-9 of what a change by the number itself makes, and less where contacts are
-    made or lost nearby, as their errors tell; NaN in cells where a law has none.
+    They lie over the swept keys, ``parameter`` and, where the variable has them, steps, each with its error; NaN in
+    cells where a law has none. They are exact to about 1e-9 of what a change by the number itself makes, and less where
+    contacts are made or lost nearby, as their errors tell.
     """
     keys, names, steps = plan.scene.output.derivatives, plan.variables, plan.steps
     found = np.full((len(plan.cells), len(keys), 2, len(names) * steps + len(PULL_OFF_NUMBERS)), np.nan)
@@ -40,7 +40,7 @@ def derivatives(plan: Plan) -> tuple[dict[str, Array], dict[str, Array], list[st
         try:
             found[number] = _derivatives(cell, names, keys)
         except RoughmdrError as error:
-            failures.append(f"{plan.name_of(number, 0)}: {error}")
+            failures.append(f"{plan.name_of(number)}: {error}")
     found = found.reshape(*plan.sizes.values(), *found.shape[1:])
     declared = {name: LAW_VARIABLES[name] for name in names} | (PULL_OFF_NUMBERS if plan.unloads else {})
     dims, variables, first = (*plan.sizes, "parameter"), dict[str, Array](), 0

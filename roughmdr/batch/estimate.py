@@ -40,17 +40,14 @@ def estimate(plan: Plan, workers: int) -> Estimate:
     file = file_bytes(plan, runs)
     computing = sum((each.last - each.first) * seconds(each.cell, each.estimator) for each in first) / busy
     whole = START_UP + computing + file / _DISK + _STEP_SECONDS * plan.steps
-    finer = sum(
-        (each.last - each.first) * (beside(each.cell, finest=True).seconds - beside(each.cell).seconds)
-        for each in first
-    )
-    at_a_time = ensemble_bytes(plan) + max(beside(cell).memory for cell in plan.cells)
+    finer = sum((each.last - each.first) * (beside(each.cell, finest=True)[0] - beside(each.cell)[0]) for each in first)
+    at_a_time = ensemble_bytes(plan) + max(beside(cell)[1] for cell in plan.cells)
     return Estimate(
         runs=runs,
         tasks=tasks,
         seconds=whole,
         longest=whole + finer / busy,
-        finest=busy * max(beside(cell, finest=True).memory for cell in plan.cells),
+        finest=busy * max(beside(cell, finest=True)[1] for cell in plan.cells),
         start_up=START_UP,
         memory=resident + result_bytes(plan, runs) + busy * at_a_time,
         resident=resident,

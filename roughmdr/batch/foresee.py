@@ -71,7 +71,7 @@ def foresee_cells(plan: Plan) -> Prospect:
             foresee = _foreseen if cell.scene.flat else _foreseen_curved
             foreseen.append(foresee(cell.scene, path)._replace(cell=number))
         except RoughmdrError as error:
-            failures.append(f"{plan.name_of(number, 0)}: {error}")
+            failures.append(f"{plan.name_of(number)}: {error}")
     if not foreseen:
         raise RoughmdrError(failures[0])
     coupled = max(
@@ -96,29 +96,21 @@ def check_foreseen(plan: Plan) -> None:
 
     The runs of the others tell it themselves, as do those of cells without random asperities, and expected laws.
     """
-    checked = some_cells(plan, _MAX_CHECKED)
-    refused = [
-        (number, reason)
-        for number, cell in ((number, plan.cells[number]) for number in checked)
-        if cell.scene.asperities.is_random and cell.scene.estimators != ("expected",) and (reason := _reason(cell))
-    ]
+    checked, refused = some_cells(plan, _MAX_CHECKED), list[tuple[int, str]]()
+    for number in checked:
+        scene, closest = plan.cells[number].scene, np.array([plan.cells[number].path.separation.min()])
+        if not scene.asperities.is_random or scene.estimators == ("expected",):
+            continue
+        try:
+            _foreseen(scene, LoadingPath.along(closest, unload=False, adhesive=scene.work > 0.0))
+        except TooMuchContact as error:
+            refused.append((number, str(error)))
+        except RoughmdrError:
+            pass  # the runs will tell
     if refused:
         number, reason = refused[0]
         others = f" ({len(refused)} of {len(checked)} cells that were checked)" if len(plan.cells) > 1 else ""
-        raise TooMuchContact(f"{plan.name_of(number, 0)}: {reason}{others}")
-
-
-def _reason(cell: Cell) -> str:
-    """Return why the run at the closest approach would have too much contact; empty where it would not."""
-    closest = np.array([cell.path.separation.min()])
-    path = LoadingPath.along(closest, unload=False, adhesive=cell.scene.work > 0.0)
-    try:
-        _foreseen(cell.scene, path)
-    except TooMuchContact as error:
-        return str(error)
-    except RoughmdrError:
-        return ""  # the runs will tell
-    return ""
+        raise TooMuchContact(f"{plan.name_of(number)}: {reason}{others}")
 
 
 def _foreseen(scene: Scene, path: LoadingPath) -> Foreseen:

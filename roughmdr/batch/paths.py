@@ -65,9 +65,8 @@ class PathFinder:
 
 def _found_ends(cell: Scene, start: float | None, stop: float | None) -> tuple[float | None, float | None]:
     """Return the start and the stop that follow from a scene [m]; None for those that are given as separations."""
-    clear = clear_start(cell) if start is None else None
-    begin = clear if start is None else start
-    assert begin is not None
+    begin = clear_start(cell) if start is None else start
+    clear = begin if start is None else None
     if stop is None:
         assert cell.path.target is not None
         return clear, target_stop(cell, cell.path.target, begin)

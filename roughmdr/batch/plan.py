@@ -34,11 +34,6 @@ class Cell(NamedTuple):
     """The path that is controlled."""
 
     @property
-    def usual(self) -> Path:
-        """The path of the flat itself: over usual asperities, where their force decides on its separation."""
-        return self.controlled.over(self.path)
-
-    @property
     def values(self) -> Floats:
         """The controlled quantity at each step, in SI."""
         return self.controlled.values
@@ -121,10 +116,10 @@ class Plan(NamedTuple):
         """Lines on the maps of the asperities, with the number of cells where not of all."""
         return count_by_cell((text for cell in self.cells for text in cell.scene.map_lines), len(self.cells))
 
-    def name_of(self, cell: int, realization: int) -> str:
-        """Describe a run: the swept values of its cell, and its realisation."""
+    def name_of(self, cell: int) -> str:
+        """Describe the first run of a cell: its swept values, and its realisation."""
         values = next(islice(self.scene.sweep.cells(), cell, None))
-        return ", ".join([*([describe_cell(values)] if values else []), f"realisation {realization}"])
+        return ", ".join([*([describe_cell(values)] if values else []), "realisation 0"])
 
     def coordinates(self) -> dict[str, Array]:
         """Return the swept values and, over the steps, the controlled quantity, the branch and perhaps the time."""

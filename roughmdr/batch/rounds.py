@@ -1,6 +1,7 @@
 """Which runs come next: all of them at once or, with [accuracy], as many as it takes, cell by cell."""
 
 import math
+from functools import cache
 from typing import NamedTuple
 
 from roughmdr.batch.choice import Choice
@@ -48,7 +49,7 @@ class Rounds:
         self._computed_as = [first_with.setdefault(each.method.key, cell) for cell, each in enumerate(self._histories)]
         self._open = list(first_with.values())
         self._requested: dict[str, int] = {}
-        self._rare: dict[int, RareAsperities] = {}
+        self._rare = cache(lambda cell: RareAsperities(plan.cells[cell]))
 
     @property
     def methods(self) -> list[CellMethod]:
@@ -126,10 +127,8 @@ class Rounds:
         moments = collector.watched(draws.key, draws.realizations)
         if moments is None:  # some failed
             return history
-        if cell not in self._rare:
-            self._rare[cell] = RareAsperities(self._plan.cells[cell])
         over_range = self._plan.watched == "separation"
-        unmet = self._rare[cell].spread(draws.realizations)
+        unmet = self._rare(cell).spread(draws.realizations)
         error = relative_error(moments, unmet, over_range=over_range)
         drawn_error = relative_error(moments, over_range=over_range)
         known = draws._replace(error=error, drawn_error=drawn_error) if error < math.inf else draws
@@ -168,11 +167,9 @@ class Rounds:
         if estimator == "expected" or not planned.scene.asperities.is_random:
             numerical = choice.numerical(told, law) if estimator == "expected" else 0.0
             return history._replace(method=method._replace(error=method.model_error + numerical))
-        if cell not in self._rare:
-            self._rare[cell] = RareAsperities(planned)
         of_it = choice.variable == planned.controlled.watched  # what rare ones would add to others is not known
         error = error_at(
-            moments, choice.step, self._rare[cell].spread(count) if of_it else 0.0, absolute=choice.of.absolute
+            moments, choice.step, self._rare(cell).spread(count) if of_it else 0.0, absolute=choice.of.absolute
         )
         whole, asked = method.model_error + choice.drawn(error, count), choice.standard_error(method.model_error)
         method = method._replace(error=whole if whole < math.inf else math.nan)

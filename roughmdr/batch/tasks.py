@@ -21,12 +21,11 @@ from roughmdr.batch.resume.manifest import Runs
 from roughmdr.batch.task_result import ResultRow, Row, TaskResult, merge_rows, row_of
 from roughmdr.errors import RoughmdrError
 from roughmdr.loading.pull_off import PullOff
-from roughmdr.numerics.arguments import Floats
 from roughmdr.scene import Scene
 from roughmdr.storage.room import IN_MEMORY
 from roughmdr.variables import ADHESION_CODES, DONE, FAILED, RUN_DIAGNOSTICS
 
-_SINGLE_TASK = 0.1  # a batch that takes less [s] is one task: to load dask takes as long
+_SINGLE_TASK = 0.1  # a batch that takes less [s] is one task: to keep its parts on the disk takes as long
 _MIN_SECONDS, _USUAL_SECONDS, _MAX_SECONDS = 0.05, 0.1, 3.0  # run time of a task [s]
 _MANY = 4000  # number of tasks from which each may take longer than usual
 _TASKS_PER_WORKER = 8  # least number of tasks for each worker, so that all workers finish together
@@ -130,45 +129,39 @@ def compute(task: Task) -> TaskResult | None:
         return None
     rows: list[ResultRow] = []
     for number, runs in enumerate(task.ranges):
-        results = _moments(runs, task.variables) if task.keep_moments else _curves(runs, task.variables)
-        rows += [result._replace(cell=number) for result in results]
+        each = (_run(runs, realization, task.variables) for realization in range(runs.first, runs.last))
+        rows += [row._replace(cell=number) for row in (_merged(each) if task.keep_moments else each)]
     return task.result_of(rows)
 
 
-def _curves(runs: RunRange, names: Sequence[str]) -> Iterator[ResultRow]:
-    for realization in range(runs.first, runs.last):
-        values, pull_off, diagnostics = _run(runs, realization, names)
-        yield ResultRow(0, realization, Moments.of(values), pull_off, diagnostics)
-
-
-def _moments(runs: RunRange, names: Sequence[str]) -> Iterator[ResultRow]:
+def _merged(rows: Iterable[ResultRow]) -> Iterator[ResultRow]:
     """Yield blocks of merged realisations; those that fail stand alone."""
-    tree, pull_offs, rows = MomentTree[Moments](), MomentTree[KnownMoments](), dict[int, Row]()
-    for realization in range(runs.first, runs.last):
-        values, pull_off, rows[realization] = _run(runs, realization, names)
-        if rows[realization]["status"] == FAILED:
-            yield ResultRow(0, realization, Moments.of(values), pull_off, rows[realization])
+    tree, pull_offs, diagnostics = MomentTree[Moments](), MomentTree[KnownMoments](), dict[int, Row]()
+    for row in rows:
+        if row.diagnostics["status"] == FAILED:
+            yield row
         else:
-            tree.add(realization, Moments.of(values))
-            pull_offs.add(realization, pull_off)
+            tree.add(row.first, row.moments)
+            pull_offs.add(row.first, row.pull_off)
+            diagnostics[row.first] = row.diagnostics
     for first, moments in tree.blocks.items():
-        merged = merge_rows([rows[realization] for realization in range(first, first + moments.size)])
+        merged = merge_rows([diagnostics[realization] for realization in range(first, first + moments.size)])
         yield ResultRow(0, first, moments, pull_offs.blocks[first], merged)
 
 
-def _run(runs: RunRange, realization: int, names: Sequence[str]) -> tuple[Floats, KnownMoments, Row]:
-    """Return the variables [variable, step], the pull-off and the diagnostics of one realisation."""
+def _run(runs: RunRange, realization: int, names: Sequence[str]) -> ResultRow:
+    """Compute one realisation."""
     scene, started = runs.cell.scene, time.perf_counter()
     try:
         result = simulate_realization(scene, runs.cell.controlled, realization, list(names), runs.estimator)
-        known = diagnostics_of(result, scene)
+        values, pull_off = np.array([result.variables[name] for name in names]), result.pull_off
+        known = {"status": DONE, **diagnostics_of(result, scene)}
     except Exception as error:  # whatever it is, the other runs go on
-        values = np.full((len(names), runs.cell.steps), math.nan)
+        values, pull_off = np.full((len(names), runs.cell.steps), math.nan), PullOff()
         remark = f"{type(error).__name__}: {error}" if str(error) else type(error).__name__
-        row = row_of(run_time=time.perf_counter() - started, status=FAILED, remark=remark)
-        return values, KnownMoments.of(np.array(PullOff())), row
-    values, pull_off = np.array([result.variables[name] for name in names]), KnownMoments.of(np.array(result.pull_off))
-    return values, pull_off, row_of(run_time=time.perf_counter() - started, status=DONE, **known)
+        known = {"status": FAILED, "remark": remark}
+    diagnostics = row_of(run_time=time.perf_counter() - started, **known)
+    return ResultRow(0, realization, Moments.of(values), KnownMoments.of(np.array(pull_off)), diagnostics)
 
 
 def diagnostics_of(result: LoadSeparation, scene: Scene) -> dict[str, object]:

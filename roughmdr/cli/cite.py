@@ -18,20 +18,20 @@ def cite(result: Path, bibtex: bool) -> None:
     Those of all that it uses, and no others. RESULT may also be a scene (.toml) or a fit.
     """
     from roughmdr.report.cite import describe_papers
+    from roughmdr.storage.result_file import is_fit
 
+    data = None
     if result.suffix.lower() == ".toml":
         from roughmdr.scene import read
 
-        print_text(describe_papers(read(result).toml, None, bibtex=bibtex))
-        return
-    from roughmdr.storage.result_file import is_fit
-
-    if is_fit(result):
+        scene = read(result).toml
+    elif is_fit(result):
         from roughmdr.fitting.stored import read_fit
 
         fit = read_fit(result)
         warn_of(result, fit.integrity_fault())
-        print_text(describe_papers(fit.attrs["scene"], None, bibtex=bibtex))
-        return
-    data = read_warned(result)
-    print_text(describe_papers(data.attrs["scene"], data, bibtex=bibtex))
+        scene = fit.attrs["scene"]
+    else:
+        data = read_warned(result)
+        scene = data.attrs["scene"]
+    print_text(describe_papers(scene, data, bibtex=bibtex))

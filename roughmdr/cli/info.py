@@ -1,6 +1,7 @@
 """roughmdr info: tell what a result contains, or how far a batch is."""
 
 import math
+import os
 import time
 from contextlib import suppress
 from pathlib import Path
@@ -41,7 +42,7 @@ def info(ctx: click.Context, result: Path, cells: bool, follow: bool, as_json: b
         from roughmdr.storage.files import destination
 
         output, parts = destination(result), result.with_name(f"{result.name}.parts")
-        if _is_folder(parts):
+        if os.path.isdir(parts):
             raise StoreError(f"{result}: is not written yet; what is finished is told by: roughmdr info {parts}")
         if (shares := Share.all_beside(output)) and not as_json:
             from roughmdr.report.parts import describe_shares
@@ -82,7 +83,7 @@ def _follow(result: Path) -> Path:
     folder = result if result.name.endswith(".parts") else store_folder(destination(result))
     output = folder.with_name(folder.name.removesuffix(".parts"))
     so_far, first, started, last, told = None, 0, 0.0, "", 0
-    while _is_folder(folder):
+    while os.path.isdir(folder):
         try:
             kept = read_kept(folder)
         except StoreError:  # it has just ended
@@ -115,12 +116,6 @@ def _is_missing(path: Path) -> bool:
         return True
     except (OSError, ValueError):  # a circle of links, or a name that is too long or has NUL: reading tells which
         pass
-    return False
-
-
-def _is_folder(path: Path) -> bool:
-    with suppress(OSError):
-        return path.is_dir()
     return False
 
 

@@ -2,7 +2,6 @@
 
 import time
 from pathlib import Path
-from typing import Any
 
 import click
 
@@ -19,7 +18,7 @@ from roughmdr.cli.terminal import Command
 @click.option("--quiet", is_flag=True, help="Print nothing but errors.")
 @json_option
 @click.pass_context
-def join(ctx: click.Context, /, output: Path, workers: int, fresh: bool, **silent: Any) -> None:
+def join(ctx: click.Context, /, output: Path, workers: int, fresh: bool, quiet: bool, as_json: bool) -> None:
     """Write OUTPUT from the parts that "roughmdr run ... -o OUTPUT --part NUMBER/COUNT" has kept beside it.
 
     Names the parts that are missing or not done. Runs that failed are tried again. The numbers are those of one run of
@@ -28,6 +27,6 @@ def join(ctx: click.Context, /, output: Path, workers: int, fresh: bool, **silen
     started = time.perf_counter()
     with without_garbage_collection():
         from roughmdr.runner.shares import join as joined
-    quiet = silent["quiet"] or silent["as_json"]
+    quiet |= as_json
     done = joined(output, backend(workers, "threads"), fresh=fresh, quiet=quiet, command=command_line())
-    print_done(ctx, done, output, started, **silent)
+    print_done(ctx, done, output, started, quiet=quiet, as_json=as_json, verbose=False)

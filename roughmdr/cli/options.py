@@ -20,22 +20,16 @@ workers_option = click.option(
 
 
 def pairs(option: str, texts: Sequence[str]) -> dict[str, object]:
-    """Read several KEY=VALUE, each key once."""
+    """Read several KEY=VALUE, numbers or texts, each key once."""
     found: dict[str, object] = {}
     for text in texts:
-        key, value = _pair(option, text)
+        key, equals, value = map(str.strip, text.partition("="))
+        if not (key and equals and value):
+            raise click.UsageError(f"{option} {text}: expected KEY=VALUE")
         if key in found:
             raise click.UsageError(f"{option} {text}: {key} has a value already, {found[key]}")
-        found[key] = value
+        try:
+            found[key] = float(value)
+        except ValueError:
+            found[key] = value
     return found
-
-
-def _pair(option: str, text: str) -> tuple[str, object]:
-    """Read KEY=VALUE, a number or a text."""
-    key, equals, value = map(str.strip, text.partition("="))
-    if not (key and equals and value):
-        raise click.UsageError(f"{option} {text}: expected KEY=VALUE")
-    try:
-        return key, float(value)
-    except ValueError:
-        return key, value

@@ -15,8 +15,6 @@ from roughmdr.errors import RoughmdrError
 if TYPE_CHECKING:
     from roughmdr.batch.resume.share import Share
     from roughmdr.runner.backend import Backend
-    from roughmdr.runner.cluster import Tls
-    from roughmdr.runner.shares import ComputedShare
     from roughmdr.storage.labelled import Labelled
 
 
@@ -32,9 +30,9 @@ if TYPE_CHECKING:
     metavar="threads|processes|tcp://HOST:PORT|tls://HOST:PORT",
     help="Compute on this machine, or on the dask cluster with its scheduler at this address.",
 )
-@click.option("--tls-ca", type=FILE, help="For tls://: certificate of the authority (PEM).")
-@click.option("--tls-cert", type=FILE, help="For tls://: certificate of this client (PEM).")
-@click.option("--tls-key", type=FILE, help="For tls://: key of this client (PEM).")
+@click.option("--tls-ca", "tls_ca_file", type=FILE, help="For tls://: certificate of the authority (PEM).")
+@click.option("--tls-cert", "tls_client_cert", type=FILE, help="For tls://: certificate of this client (PEM).")
+@click.option("--tls-key", "tls_client_key", type=FILE, help="For tls://: key of this client (PEM).")
 @click.option(
     "--resume/--fresh",
     default=True,
@@ -67,6 +65,7 @@ def run(
     quiet, verbose, as_json = (others.pop(name) for name in ("quiet", "verbose", "as_json"))
     if quiet and verbose:
         raise click.UsageError("--quiet and --verbose exclude each other")
+    quiet |= as_json
     with without_garbage_collection():
         from roughmdr.scene import read
 
@@ -78,13 +77,12 @@ def run(
         from roughmdr.runner.run import execute
 
         planned = plan_scene(validated)
-    options = {"resume": resume, "quiet": quiet or as_json, "command": command_line()}
+    options = {"resume": resume, "quiet": quiet, "command": command_line()}
     if share is not None:
         from roughmdr.runner.shares import compute_share
 
-        _print_share(
-            ctx, compute_share(planned, output, share, backend(**others), **options), quiet=quiet, as_json=as_json
-        )
+        part_done = compute_share(planned, output, share, backend(**others), **options)
+        _print_share(ctx, *part_done, quiet=quiet, as_json=as_json)
         return
     done = execute(planned, output, backend(**others), **options)
     print_done(ctx, done, output, started, quiet=quiet, verbose=verbose, as_json=as_json)
@@ -96,71 +94,54 @@ def _share(text: str) -> "Share":
     return Share.parse(text)
 
 
-def _print_share(ctx: click.Context, done: "ComputedShare", *, quiet: bool, as_json: bool) -> None:
+def _print_share(ctx: click.Context, folder: Path | None, failures: list[str], *, quiet: bool, as_json: bool) -> None:
     """Tell what is kept of a part of the runs; exit with status 1 if runs failed."""
     from roughmdr.batch.resume.kept import read_kept
-    from roughmdr.report.documents import fault
     from roughmdr.report.parts import describe_parts, parts_table
 
-    kept = None if done.folder is None else read_kept(done.folder)
-    failed = f"{len(done.failures)} runs failed: {done.failures[0]}" if done.failures else ""
-    if as_json:
-        faults = [fault(failed)] if failed else []
-        print_document(ctx, INCOMPLETE if failed else 0, faults=faults, parts=kept and parts_table(kept))
-    elif not quiet:
-        nothing = "kept         nothing: there are fewer runs than parts"
-        print_text(nothing if kept is None else describe_parts(kept))
-    elif failed:
-        print_text(f"roughmdr: {failed}", err=True)
-    if failed:
-        sys.exit(INCOMPLETE)
+    kept = None if folder is None else read_kept(folder)
+    text = "kept         nothing: there are fewer runs than parts" if kept is None else describe_parts(kept)
+    table = {"parts": kept and parts_table(kept)} if as_json else {}
+    _end(ctx, f"{len(failures)} runs failed: {failures[0]}" if failures else "", "" if quiet else text, **table)
 
 
 def print_done(
-    ctx: click.Context,
-    done: "Labelled",
-    output: Path,
-    started: float,
-    *,
-    quiet: bool,
-    as_json: bool,
-    verbose: bool = False,
+    ctx: click.Context, done: "Labelled", output: Path, started: float, *, quiet: bool, as_json: bool, verbose: bool
 ) -> None:
     """Tell what a result holds; exit with status 1 if runs failed."""
     from roughmdr.report.summary import describe_failed, describe_result
     from roughmdr.result.view import ResultView
 
-    result = ResultView(done)
-    elapsed, failed = time.perf_counter() - started, describe_failed(result)
+    result, elapsed, text, table = ResultView(done), time.perf_counter() - started, "", dict[str, Any]()
     if as_json:
-        from roughmdr.report.documents import fault
         from roughmdr.report.result_document import result_table
 
-        faults = [fault(failed)] if failed else []
-        print_document(ctx, INCOMPLETE if failed else 0, faults=faults, result=result_table(result, output, elapsed))
+        table["result"] = result_table(result, output, elapsed)
     elif not quiet:
-        print_text(describe_result(result, elapsed, left_out=verbose))
-        print_text(f"result       {click.format_filename(output)}")
+        told = describe_result(result, elapsed, left_out=verbose)
+        text = f"{told}\nresult       {click.format_filename(output)}"
+    _end(ctx, describe_failed(result), text, **table)
+
+
+def _end(ctx: click.Context, failed: str, text: str, **table: Any) -> None:
+    """Print a table for --json, else a text, else why runs failed; exit with status 1 if some did."""
+    if table:
+        from roughmdr.report.documents import fault
+
+        print_document(ctx, INCOMPLETE if failed else 0, faults=[fault(failed)] if failed else [], **table)
+    elif text:
+        print_text(text)
     elif failed:
         print_text(f"roughmdr: {failed}", err=True)
     if failed:
         sys.exit(INCOMPLETE)
 
 
-def backend(workers: int, scheduler: str, **tls_files: Path | None) -> "Backend":
-    """Return where runs are computed, from the options of the command."""
+def backend(workers: int, scheduler: str, **tls: Path | None) -> "Backend":
+    """Return where runs are computed, from the options of the command; RoughmdrError if some files of TLS lack."""
     from roughmdr.runner.backend import Backend
 
-    return Backend(scheduler, workers, _tls(**tls_files))
-
-
-def _tls(**files: Path | None) -> "Tls | None":
-    """Return the TLS files, None if none is given; RoughmdrError if only some are."""
-    given = {option.removeprefix("tls_"): str(file) for option, file in files.items() if file is not None}
-    if not given:
-        return None
-    if len(given) < len(files):
+    given = {option: str(file) for option, file in tls.items() if file is not None}
+    if 0 < len(given) < len(tls):
         raise RoughmdrError("--tls-ca, --tls-cert and --tls-key must be given together")
-    from roughmdr.runner.cluster import Tls
-
-    return Tls(**given)
+    return Backend(scheduler, workers, given)

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from roughmdr.asperity.validity import ValidityLimits
 from roughmdr.batch.collect import CollectedResults
-from roughmdr.batch.derivatives import derivatives
+from roughmdr.batch.derivatives import derivatives_of
 from roughmdr.batch.plan import Plan
 from roughmdr.batch.resume.keys import versions
 from roughmdr.batch.rounds import CellMethod
@@ -98,8 +98,8 @@ def assemble(
         data["accuracy_method"] = of_cells("accuracy_method", [ESTIMATORS.index(each.estimator) for each in methods])
         warnings += more
     if scene.output.derivatives:
-        found, parameters, more = derivatives(plan)
-        data |= found
+        derivatives, parameters, more = derivatives_of(plan)
+        data |= derivatives
         coordinates |= parameters
         warnings += more
     if warnings:

@@ -1,10 +1,11 @@
 """Where tasks are computed: threads or processes of this machine, or a dask cluster."""
 
+from collections.abc import Mapping
 from contextlib import AbstractContextManager, closing, nullcontext
 from typing import TYPE_CHECKING, NamedTuple
 
 from roughmdr.errors import RoughmdrError
-from roughmdr.runner.cluster import Cluster, Tls, connected
+from roughmdr.runner.cluster import Cluster, connected
 from roughmdr.runner.local import Pool, Processes, Threads
 
 if TYPE_CHECKING:
@@ -19,7 +20,7 @@ class Backend(NamedTuple):
 
     scheduler: "str | Client" = "threads"  # "threads", "processes", the address of a dask cluster, or a Client of one
     workers: int = 2
-    tls: Tls | None = None
+    tls: Mapping[str, str] | None = None  # files for an encrypted connection, as distributed.Security names them
     runs_per_task: int | None = None  # None for as many as make a task worth its overhead
 
     def check(self) -> None:

@@ -4,7 +4,6 @@ import shutil
 import threading
 from collections.abc import Iterator, Sequence
 from contextlib import ExitStack, contextmanager
-from dataclasses import dataclass
 from pathlib import Path
 from typing import NamedTuple
 
@@ -26,7 +25,7 @@ from roughmdr.numerics.compiling import compiling
 from roughmdr.result.assemble import assemble, curves_so_far
 from roughmdr.runner.backend import Backend
 from roughmdr.runner.cluster import Cluster
-from roughmdr.runner.local import Pool, Serial, Sink, Threads
+from roughmdr.runner.local import Pool, Sink
 from roughmdr.runner.progress import Progress, progress, tell_compiling
 from roughmdr.runner.signals import Interrupted, interruptible
 from roughmdr.runner.together import BETWEEN_LOOKS, Together, WrittenElsewhereError
@@ -37,7 +36,6 @@ from roughmdr.storage.room import Room
 from roughmdr.storage.zarr_store import check_package
 from roughmdr.variables import FAILED
 
-_FORCE = "force"
 _COPIES = 3  # copies of large curves on the disk: task results, in their places, the result; as they came, [accuracy]
 
 
@@ -52,14 +50,6 @@ class Beginning(NamedTuple):
     """The result that is at the output."""
     finished: bool
     """Whether that is just what is asked for."""
-
-    def missing(self, ranges: Sequence[RunRange], selected: list[tuple[int, int]]) -> list[RunRange]:
-        """Return the runs that earlier ones have not left; append the rows of the others to ``selected``."""
-        return [
-            runs._replace(first=first, last=last)
-            for runs in ranges
-            for first, last in self.reusable.select(runs.key, runs.first, runs.last, selected)
-        ]
 
 
 @contextmanager
@@ -128,21 +118,16 @@ def at_work(
 def computed_variables(plan: Plan) -> tuple[str, ...]:
     """Return the variables that are computed: those asked for, and those of an error asked for and of a pull-off."""
     of_error = [] if plan.scene.accuracy is None else [plan.watched]
-    of_pull_off = [_FORCE] if plan.control == "separation" and plan.unloads else []
+    of_pull_off = ["force"] if plan.control == "separation" and plan.unloads else []
     return tuple(dict.fromkeys([*plan.variables, *of_error, *of_pull_off]))
 
 
-@dataclass
 class Batch:
     """The runs of a plan, and the pool that computes them."""
 
-    _beginning: Beginning
-    _pool: Pool
-    _runs_per_task: int | None
-    _command: str
-
-    def __post_init__(self) -> None:
-        self._plan, self._rounds, self._writer, self._reusable, self._old, _ = self._beginning
+    def __init__(self, beginning: Beginning, pool: Pool, runs_per_task: int | None, command: str) -> None:
+        self._pool, self._runs_per_task, self._command = pool, runs_per_task, command
+        self._plan, self._rounds, self._writer, self._reusable, self._old, _ = beginning
         plan = self._plan
         watched = None if plan.scene.accuracy is None else plan.watched
         self._variables = computed_variables(plan)
@@ -176,7 +161,7 @@ class Batch:
         try:
             ranges = self._rounds.begin()
             while ranges:
-                self._round(ranges, display, stop, self._add)
+                self._round(ranges, display, stop, lambda result: self._writer.placed(self._collector.add(result)))
                 ranges = self._rounds.next(self._collector)
             self._together.await_turn(stop)
         except StoreError:  # perhaps since all that led to the result is removed
@@ -208,7 +193,7 @@ class Batch:
         failed = collected.diagnostics["status"] == FAILED
         if self._collector.none_done:
             error = first_error(str(collected.diagnostics["remark"][failed][0]))
-            name = self._plan.name_of(int(np.argwhere(failed)[0, 0]), 0)
+            name = self._plan.name_of(int(np.argwhere(failed)[0, 0]))
             raise (type(error) if isinstance(error, RoughmdrError) else Unfinished)(f"{name}: {error}")
         result = assemble(self._plan, methods, collected, self._variables, self._command)
         if self._old is not None:
@@ -216,9 +201,6 @@ class Batch:
             check_no_less(self._writer.target, self._old, result, self._rounds.keys)
         self._writer.finish(result, complete=not (failed.any() or self._reusable.has_unused(cells)))
         return result
-
-    def _add(self, result: TaskResult) -> None:
-        self._writer.placed(self._collector.add(result))
 
     def _saved_message(self) -> str:
         return self._writer.saved_message or "nothing was written"
@@ -246,7 +228,7 @@ class Batch:
         """Take those runs that there are by now; return the others."""
         selected: list[tuple[int, int]] = []
         self._together.look(self._reusable)
-        missing = self._beginning.missing(ranges, selected)
+        missing = self._reusable.missing(ranges, selected)
         for result in self._reusable.read(selected):
             take(result)
             display.add(reused=result.realizations)
@@ -265,7 +247,6 @@ class Batch:
                 self._writer.grow(data, places.diagnostics["status"])
         if not on_cluster:
             prepare_all(self._plan, [runs for task in tasks for runs in task.ranges])
-        pool = Serial() if len(tasks) == 1 and isinstance(self._pool, Threads) else self._pool
 
         def sink(result: TaskResult) -> None:
             for cell, first in zip(result.cell.tolist(), result.first.tolist(), strict=True):
@@ -275,7 +256,7 @@ class Batch:
             display.add(done=result.realizations)
 
         # Workers of a cluster outlive the batch, and would keep their claims.
-        pool.compute(self._together.claimed(tasks, by_workers=not on_cluster), stop, sink)
+        self._pool.compute(self._together.claimed(tasks, by_workers=not on_cluster), stop, sink)
         return list(undone.values())
 
 

@@ -6,9 +6,9 @@ import sys
 import threading
 import time
 import uuid
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from contextlib import ExitStack, contextmanager
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 from urllib.parse import urlsplit
 
 from roughmdr.batch.tasks import Task, compute, failed
@@ -26,14 +26,6 @@ _TIMEOUT = 30.0  # longest wait for an answer of the scheduler [s]
 _GREETING_TIMEOUT = 5.0  # longest wait for its first bytes [s]: so a wrong address shows within ten seconds
 _GREETING = b"pickle-protocol"  # key of the handshake with which a dask scheduler opens a connection
 _GREETING_BYTES = 2**12  # first bytes of a connection, which hold that key
-
-
-class Tls(NamedTuple):
-    """Files for an encrypted connection."""
-
-    ca: str
-    cert: str
-    key: str
 
 
 class Cluster:
@@ -111,8 +103,11 @@ def _check_scheduler(address: str, context: "ssl.SSLContext | None") -> None:
 
 
 @contextmanager
-def connected(address: str, tls: Tls | None) -> Iterator[Cluster]:
-    """Connect to the cluster at tcp://HOST:PORT or tls://HOST:PORT; RoughmdrError where there is none."""
+def connected(address: str, tls: Mapping[str, str] | None) -> Iterator[Cluster]:
+    """Connect to the cluster at tcp://HOST:PORT or tls://HOST:PORT; RoughmdrError where there is none.
+
+    ``tls`` are the files for an encrypted connection, as ``distributed.Security`` names them.
+    """
     try:
         from distributed import Client, Security
     except ImportError:
@@ -121,11 +116,7 @@ def connected(address: str, tls: Tls | None) -> Iterator[Cluster]:
             "clone of roughmdr"
         ) from None
     try:
-        security = Security()  # as dask is configured
-        if tls is not None:
-            security = Security(
-                tls_ca_file=tls.ca, tls_client_cert=tls.cert, tls_client_key=tls.key, require_encryption=True
-            )
+        security = Security(**tls, require_encryption=True) if tls else Security()  # as dask is configured
         context = security.get_connection_args("client").get("ssl_context")
         secure = address.startswith("tls://")
         if security.require_encryption and not secure:

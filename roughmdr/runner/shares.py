@@ -3,11 +3,9 @@
 import shlex
 from contextlib import ExitStack
 from pathlib import Path
-from typing import NamedTuple
 
 from roughmdr.batch.choose import plan_scene
 from roughmdr.batch.plan import Plan
-from roughmdr.batch.resume.kept import read_kept
 from roughmdr.batch.resume.keys import versions
 from roughmdr.batch.resume.share import Share
 from roughmdr.batch.resume.store import CheckpointStore, locked_store
@@ -23,20 +21,12 @@ from roughmdr.storage.labelled import Labelled
 _NAMED = 8  # most shares that a message names
 
 
-class ComputedShare(NamedTuple):
-    """A share that has been computed."""
-
-    folder: Path | None
-    """The folder of its results; None where it has no runs."""
-    failures: list[str]
-    """Why runs failed, one text for each."""
-
-
 def compute_share(
     plan: Plan, target: Path, share: Share, backend: Backend, *, resume: bool, quiet: bool, command: str
-) -> ComputedShare:
+) -> tuple[Path | None, list[str]]:
     """Compute a share of the runs of a plan, and keep their results beside ``target``, which is not looked at.
 
+    Return the folder of these results, None where the share has no runs, and for each run that failed the reason.
     SceneError where the runs depend on results, StoreError where the results cannot be kept.
     """
     if plan.scene.accuracy is not None:
@@ -44,13 +34,9 @@ def compute_share(
     backend.check()
     with begun(plan, target, share, resume=resume) as beginning:
         ranges = share.of(beginning.rounds.begin())
-        if not ranges:
-            if not resume:
-                beginning.writer.clear()
-            beginning.writer.begin(plan.scene.toml, command)  # for runs that an earlier scene had in the share
-            return ComputedShare(None, [])
         with at_work(beginning, backend, command, resume=resume, quiet=quiet, assembled=False) as batch:
-            return ComputedShare(share.folder(destination(target)), batch.keep(ranges, quiet=quiet))
+            failures = batch.keep(ranges, quiet=quiet)  # of none too: an earlier scene may have had runs in the share
+            return share.folder(destination(target)) if ranges else None, failures
 
 
 def join(target: Path, backend: Backend, *, fresh: bool = False, quiet: bool, command: str) -> Labelled:
@@ -102,9 +88,9 @@ def _common_scene(stores: list[CheckpointStore]) -> str:
 
 def _check_complete(beginning: Beginning, target: Path, total: int, stores: list[CheckpointStore]) -> None:
     """Raise StoreError, which names the shares and how they are computed, unless all runs are there or have failed."""
-    failed = set[tuple[str, int]]().union(*(read_kept(store.folder).failed for store in stores))
+    failed = set[tuple[str, int]]().union(*(store.failed for store in stores))
     ranges = Rounds(beginning.plan).begin()
-    missing = beginning.missing(ranges, [])
+    missing = beginning.reusable.missing(ranges, [])
     lacking = {(each.key, run) for each in missing for run in range(each.first, each.last)} - failed
     if not lacking:
         return

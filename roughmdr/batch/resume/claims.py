@@ -7,15 +7,15 @@ ends. On a disk without locks nobody is kept out: there only parts of a batch ma
 import errno
 import os
 import threading
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 from zlib import crc32
 
-from roughmdr.batch.resume.manifest import ManifestTail, Runs, runs_of
+from roughmdr.batch.resume.manifest import Manifest, Runs, runs_of
 from roughmdr.storage.files import convert_os_errors
 
-NO_LOCKS = (errno.ENOSYS, errno.EOPNOTSUPP, errno.ENOLCK)
+_NO_LOCKS = (errno.ENOSYS, errno.EOPNOTSUPP, errno.ENOLCK)
 """Error numbers of disks without locks, such as some that a cluster shares."""
 CLAIMS = "claims"
 _RUNS = 2**32  # number of bytes that a cell has in the file, more than realisations that a scene may ask for
@@ -29,13 +29,13 @@ class Claims:
     def __init__(self, folder: Path) -> None:
         self._file = os.open(folder / CLAIMS, os.O_RDWR | os.O_CREAT | os.O_NOFOLLOW, 0o666)
         self._folder, self._guard = folder, threading.Lock()
-        self._tail, self._done = ManifestTail(folder), dict[str, list[Runs]]()
+        self._manifest, self._done = Manifest(folder), dict[str, list[Runs]]()
 
     def look(self) -> None:
         """Read which runs have been stored, or have failed, since the last look."""
         with convert_os_errors(self._folder):
-            for line in self._tail.new_lines():
-                for runs in runs_of(line) or ():
+            for line in self._manifest.new_lines():
+                for runs in runs_of(line):
                     self._done.setdefault(runs.key, []).append(runs)
 
     def are_done(self, ranges: Iterable[Runs]) -> bool:
@@ -56,7 +56,7 @@ class Claims:
                 taken.append(runs)
             else:
                 self.look()  # after the locks: who held them may have done the runs, and ended
-                if self._tail.is_there and not self.are_done(taken):
+                if not (self._manifest.ended or self.are_done(taken)):
                     return True
             for runs in taken:
                 self._unlock(_place(runs), runs.last - runs.first)
@@ -82,20 +82,25 @@ class Claims:
     def _lock(self, place: int, count: int = 1, *, wait: bool = False) -> bool:
         import fcntl
 
-        try:
-            fcntl.lockf(self._file, fcntl.LOCK_EX | (0 if wait else fcntl.LOCK_NB), count, place)
-        except (BlockingIOError, PermissionError):
-            return False
-        except OSError as error:
-            if error.errno not in NO_LOCKS:
-                raise
-        return True
+        return try_lock(fcntl.lockf, self._file, fcntl.LOCK_EX | (0 if wait else fcntl.LOCK_NB), count, place)
 
     def _unlock(self, place: int, count: int = 1) -> None:
         import fcntl
 
         with suppress(OSError):
             fcntl.lockf(self._file, fcntl.LOCK_UN, count, place)
+
+
+def try_lock(lock: Callable[..., None], *arguments: int) -> bool:
+    """Call a function that locks a file; return whether the file is locked: always, on disks without locks."""
+    try:
+        lock(*arguments)
+    except (BlockingIOError, PermissionError):
+        return False
+    except OSError as error:
+        if error.errno not in _NO_LOCKS:
+            raise
+    return True
 
 
 def _place(runs: Runs) -> int:

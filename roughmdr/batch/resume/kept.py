@@ -13,14 +13,13 @@ from typing import NamedTuple
 from roughmdr.batch.plan import Plan, make_plan
 from roughmdr.batch.resume.keys import versions
 from roughmdr.batch.resume.lock import LOCK
-from roughmdr.batch.resume.manifest import MANIFEST, Runs, manifest_lines, runs_of
+from roughmdr.batch.resume.manifest import MANIFEST, Manifest, Runs, StoredFile
 from roughmdr.batch.resume.share import Share
 from roughmdr.batch.rounds import Rounds
 from roughmdr.errors import RoughmdrError, StoreError
 from roughmdr.scene import Scene, read
 from roughmdr.schema.toml_text import parse_toml
 
-_ENDING = ".parts"
 _HOLDER = re.compile(r"process (\d+) on (.*)")
 _HOLDERS = 4000  # bytes of a lock that are read, which name some hundred runs
 _LOCKS = Path("/proc/locks")
@@ -35,47 +34,26 @@ class Holder(NamedTuple):
     since: str  # ISO 8601, UTC
 
 
-class StoredFile(NamedTuple):
-    """A stored task result."""
-
-    name: str
-    sha256: str
-    keys: frozenset[str]
-    """Keys of its cells."""
-
-
 class Kept(NamedTuple):
     """Finished runs that a folder keeps."""
 
     folder: Path
+    output: Path  # the result that the runs belong to
+    share: Share | None  # the share of the batch that is computed here; None for all of it
     scene: str  # TOML; empty where nothing is kept yet
     versions: str
     command: str  # that began the batch; empty where it is not known
     began: str  # ISO 8601, UTC; empty where it is not known
     last: str  # when something was kept last, likewise
     runs: int
-    by_key: Counter[str] | None
-    """Runs by the keys of their cells; None where an earlier version has not noted them."""
+    by_key: Counter[str]
+    """Runs by the keys of their cells; fewer than ``runs`` where an earlier version has not noted them."""
     files: tuple[StoredFile, ...]
     failed: frozenset[tuple[str, int]]  # key and realisation; the next run repeats them
     remark: str  # why the first of them failed
     complete: bool  # whether all runs of a share are kept
     holder: Holder | None  # None where no run is at work
     holder_known: bool  # whether that can be told on this system
-
-    @property
-    def output(self) -> Path:
-        """The result that the runs belong to."""
-        return self._target[0]
-
-    @property
-    def share(self) -> Share | None:
-        """The share of the batch that is computed here; None for all of it."""
-        return self._target[1]
-
-    @property
-    def _target(self) -> tuple[Path, Share | None]:
-        return Share.split_name(self.folder.with_name(self.folder.name.removesuffix(_ENDING)))
 
     @property
     def continued_by(self) -> str:
@@ -102,41 +80,24 @@ class Progress(NamedTuple):
 
 def read_kept(folder: Path) -> Kept:
     """Read the folder; StoreError where it is no folder of parts, or cannot be read."""
+    manifest, last, stored = Manifest(folder), "", dict[str, list[Runs]]()
     try:
-        content = (folder / MANIFEST).read_bytes()
-        last = _utc((folder / MANIFEST).stat().st_mtime)
-    except FileNotFoundError:  # a run has just begun, or has just ended
-        content, last = b"", ""
+        files = manifest.new_files()
+        with suppress(FileNotFoundError):  # a run has just begun, or has just ended
+            last = _utc((folder / MANIFEST).stat().st_mtime)
     except OSError as error:
         raise StoreError(f"{folder}: cannot be read: {error.strerror}") from None
     holder, known = _holder(folder)
-    if not content and not (folder / LOCK).exists():
+    if not last and not (folder / LOCK).exists():
         raise StoreError(f"{folder}: holds no runs; if a batch was at work here it has ended, see {folder.stem}")
-    batch, runs, of_cells, files = dict[str, str](), 0, dict[str, list[Runs]](), list[StoredFile]()
-    failed, remark, counted, complete = set[tuple[str, int]](), "", True, False
-    for line in manifest_lines(content):
-        match line:
-            case {"scene": str(scene), "versions": str(made_with)}:
-                batch = {"scene": scene, "versions": made_with}
-                batch |= {name: str(line.get(name, "")) for name in ("command", "began")}
-                complete = False
-            case {"complete": True}:
-                complete, failed, remark = True, set(), ""
-            case {"file": str(file), "realizations": int(count)}:
-                runs += count
-                of_file = runs_of(line)
-                counted &= of_file is not None
-                for each in of_file or ():
-                    of_cells.setdefault(each.key, []).append(each)
-                files.append(StoredFile(file, str(line.get("sha256")), frozenset(key for key, *_ in of_file or ())))
-            case {"failed": list(), "remark": str(why)}:
-                failed |= {(key, run) for key, run, _ in runs_of(line) or ()}
-                remark = remark or why
-    scene, made_with, command, began = (batch.get(name, "") for name in ("scene", "versions", "command", "began"))
-    kept_by_key = Counter({key: _count(stored) for key, stored in of_cells.items()}) if counted else None
-    runs = kept_by_key.total() if kept_by_key is not None else runs
-    told = scene, made_with, command, began, last, runs, kept_by_key, tuple(files), frozenset(failed), remark, complete
-    return Kept(folder, *told, holder, known)
+    for runs in (runs for file in files for runs in file.runs):
+        stored.setdefault(runs.key, []).append(runs)
+    by_key = Counter({key: _count(ranges) for key, ranges in stored.items()})
+    count = by_key.total() if all(file.runs for file in files) else sum(file.realizations for file in files)
+    of = Share.split_name(folder.with_name(folder.name.removesuffix(".parts")))
+    begun = manifest.scene, manifest.versions, manifest.command, manifest.began
+    failed, complete = (frozenset(manifest.failed), manifest.remark), manifest.complete
+    return Kept(folder, *of, *begun, last, count, by_key, tuple(files), *failed, complete, holder, known)
 
 
 def _count(stored: list[Runs]) -> int:
@@ -149,22 +110,21 @@ def _count(stored: list[Runs]) -> int:
 
 def progress_of(kept: Kept) -> Progress:
     """Return how far the batch is, as far as its scene can be read and planned here."""
-    scene: Scene | None = None
-    plan: Plan | None = None
+    scene, plan = None, None
     with suppress(RoughmdrError, ValueError):
         scene = read(parse_toml(kept.scene))
-        if kept.versions == versions() and kept.by_key is not None:  # else no key is the same
+        if kept.versions == versions():  # else no key is the same
             plan = make_plan(scene)
     if scene is None:
         return Progress(None, None, None, [], [], [], None)
     realizations = 1 if scene.batch.estimator == "expected" else scene.batch.realizations
-    if plan is None or kept.by_key is None:
+    if plan is None:
         total = None if scene.accuracy or kept.share else realizations * len(scene.cells)
         return Progress(scene, None, realizations, [], [], [], total)
-    rounds, by_key = Rounds(plan), kept.by_key
+    rounds = Rounds(plan)
     keys = rounds.keys
     failures = Counter(key for key, _ in kept.failed)
-    done = [sum(by_key[key] for key in of_cell) for of_cell in keys]
+    done = [sum(kept.by_key[key] for key in of_cell) for of_cell in keys]
     failed = [sum(failures[key] for key in of_cell) for of_cell in keys]
     if scene.accuracy is not None:
         return Progress(scene, plan, realizations, keys, done, failed, None)

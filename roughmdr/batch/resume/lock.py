@@ -5,23 +5,16 @@ import platform
 import time
 from contextlib import suppress
 from pathlib import Path
-from typing import NamedTuple
 
-from roughmdr.batch.resume.claims import NO_LOCKS
-from roughmdr.batch.resume.manifest import ManifestTail
+from roughmdr.batch.resume.claims import try_lock
+from roughmdr.batch.resume.keys import versions
+from roughmdr.batch.resume.manifest import Manifest
 from roughmdr.errors import StoreError
 
 LOCK = "lock"
 _BEGINNING = 60.0  # longest time [s] to wait for another run to say which batch it computes
 _BETWEEN_TRIES = 0.05  # time [s] between two tries
 _held_here: set[tuple[int, int]] = set()  # device and inode of the locks of this process, which shares none with itself
-
-
-class BatchName(NamedTuple):
-    """All that decides the numbers of a batch."""
-
-    scene: str  # TOML
-    versions: str
 
 
 class FolderLock:
@@ -55,9 +48,11 @@ class FolderLock:
             os.ftruncate(self._file, 0)
 
 
-def acquire_lock(folder: Path, target: Path, joins: BatchName | None) -> FolderLock:
-    """Lock a folder, made if need be, with no other process but those that compute ``joins``; else StoreError."""
-    deadline = time.monotonic() + _BEGINNING
+def acquire_lock(folder: Path, target: Path, joins: str) -> FolderLock:
+    """Lock a folder, made if need be, with no other process but those that compute the scene ``joins``, as TOML, in
+    these versions; else StoreError.
+    """
+    deadline, asked = time.monotonic() + _BEGINNING, (joins, versions())
     while True:
         folder.mkdir(exist_ok=True)
         try:
@@ -66,14 +61,14 @@ def acquire_lock(folder: Path, target: Path, joins: BatchName | None) -> FolderL
             continue
         try:
             alone = _flock(file)
-            may_join = not alone and joins is not None and _identity(file) not in _held_here
+            may_join = not alone and joins != "" and _identity(file) not in _held_here
             shared = may_join and _flock(file, shared=True)
             begun = _batch_in(folder) if may_join else None
-            if alone or (shared and begun == joins):
+            if alone or (shared and begun == asked):
                 with suppress(FileNotFoundError):
                     if os.path.samestat(os.fstat(file), os.stat(folder / LOCK)):
                         return FolderLock(os.dup(file), alone=alone)
-            elif not may_join or begun not in (None, joins) or time.monotonic() > deadline:
+            elif not may_join or begun not in (None, asked) or time.monotonic() > deadline:
                 holder = os.read(file, 200).decode(errors="replace").partition("\n")[0].strip()
                 raise StoreError(f"{target}: another run is writing it{holder and f' ({holder})'}")
             else:
@@ -82,13 +77,11 @@ def acquire_lock(folder: Path, target: Path, joins: BatchName | None) -> FolderL
             os.close(file)
 
 
-def _batch_in(folder: Path) -> BatchName | None:
-    """Return the batch that a folder is for; None where nothing is told yet."""
-    for line in ManifestTail(folder).new_lines():
-        match line:
-            case {"scene": str(scene), "versions": str(versions)}:
-                return BatchName(scene, versions)
-    return None
+def _batch_in(folder: Path) -> tuple[str, str] | None:
+    """Return scene and versions of the batch that a folder is for; None where nothing is told yet."""
+    manifest = Manifest(folder)
+    manifest.new_files()
+    return (manifest.scene, manifest.versions) if manifest.scene else None
 
 
 def _identity(file: int) -> tuple[int, int]:
@@ -97,14 +90,7 @@ def _identity(file: int) -> tuple[int, int]:
 
 
 def _flock(file: int, *, shared: bool = False, wait: bool = False) -> bool:
-    """Lock an open file, or change how it is locked; return whether it is: always, on disks without locks."""
+    """Lock an open file, or change how it is locked; return whether it is."""
     import fcntl
 
-    try:
-        fcntl.flock(file, (fcntl.LOCK_SH if shared else fcntl.LOCK_EX) | (0 if wait else fcntl.LOCK_NB))
-    except BlockingIOError:
-        return False
-    except OSError as error:
-        if error.errno not in NO_LOCKS:
-            raise
-    return True
+    return try_lock(fcntl.flock, file, (fcntl.LOCK_SH if shared else fcntl.LOCK_EX) | (0 if wait else fcntl.LOCK_NB))

@@ -5,6 +5,7 @@ from collections.abc import Callable, Iterator, Sequence
 import numpy as np
 
 from roughmdr.batch.task_result import TaskResult
+from roughmdr.batch.tasks import RunRange
 from roughmdr.errors import StoreError
 
 Reader = Callable[[], TaskResult | None]  # reads a task result; None where it is damaged
@@ -55,16 +56,18 @@ class ReusableRows:
         single = (result.size == 1).all()
         return result.with_variables(self._variables) if self._keep_moments or single else None
 
-    def select(self, key: str, first: int, last: int, selected: list[tuple[int, int]]) -> Iterator[tuple[int, int]]:
-        """Append the rows of realisations first ... last - 1 of a cell to ``selected``; yield the ranges without."""
-        for begin, minus_size, number, row in sorted(self._rows.get(key, ())):
-            if first <= begin and begin - minus_size <= last:
-                if first < begin:
-                    yield first, begin
-                selected.append((number, row))
-                first = begin - minus_size
-        if first < last:
-            yield first, last
+    def missing(self, ranges: Sequence[RunRange], selected: list[tuple[int, int]]) -> list[RunRange]:
+        """Return the runs without rows; append the rows of the others to ``selected``."""
+        missing = list[RunRange]()
+        for runs in ranges:
+            first = runs.first
+            for begin, minus_size, number, row in sorted(self._rows.get(runs.key, ())):
+                if first <= begin and begin - minus_size <= runs.last:
+                    missing.append(runs._replace(first=first, last=begin))
+                    selected.append((number, row))
+                    first = begin - minus_size
+            missing.append(runs._replace(first=first))
+        return [runs for runs in missing if runs.first < runs.last]
 
     def read(self, selected: Sequence[tuple[int, int]]) -> Iterator[TaskResult]:
         """Yield the rows that were selected."""

@@ -7,7 +7,8 @@ from typing import NamedTuple
 import numpy as np
 
 from roughmdr.batch.moments import Moments
-from roughmdr.batch.resume.kept import Kept, Progress, StoredFile
+from roughmdr.batch.resume.kept import Kept, Progress
+from roughmdr.batch.resume.manifest import StoredFile
 from roughmdr.batch.resume.store import read_task_result
 from roughmdr.batch.task_result import TaskResult
 from roughmdr.numerics.arguments import Ints
@@ -43,12 +44,13 @@ class SoFar:
         """Return the law of the first cell of which runs are kept, None for no run; damaged files do not count."""
         if self.progress.plan is None:
             return None
-        begun = set(kept.by_key or ())
-        cell = next((number for number, keys in enumerate(self.progress.keys) if not keys.isdisjoint(begun)), None)
+        numbered = enumerate(self.progress.keys)
+        cell = next((number for number, keys in numbered if not keys.isdisjoint(kept.by_key)), None)
         if cell is None:
             return None
         told = self.progress.keys[cell]
-        unread = (each for each in kept.files if each not in self._read and not told.isdisjoint(each.keys))
+        of_cell = (each for each in kept.files if any(runs.key in told for runs in each.runs))
+        unread = (each for each in of_cell if each not in self._read)
         room = _AT_ONCE
         for file in islice(unread, _FILES):
             self._read.add(file)
@@ -60,7 +62,7 @@ class SoFar:
                 break
         if not (known := [self._moments[key] for key in sorted(told) if key in self._moments]):
             return None
-        there = sum(count for key, count in (kept.by_key or {}).items() if key in told)
+        there = sum(kept.by_key[key] for key in told)
         return LawSoFar(cell, self._variable, self._steps, max(known, key=lambda each: each.size), there)
 
     def _add(self, result: TaskResult) -> None:

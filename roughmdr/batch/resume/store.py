@@ -21,8 +21,8 @@ from pathlib import Path
 from typing import Any
 
 from roughmdr.batch.resume.claims import CLAIMS, Claims, claims_in, give_up
-from roughmdr.batch.resume.lock import LOCK, BatchName, FolderLock, acquire_lock
-from roughmdr.batch.resume.manifest import FILE, MANIFEST, ManifestTail
+from roughmdr.batch.resume.lock import LOCK, FolderLock, acquire_lock
+from roughmdr.batch.resume.manifest import FILE, MANIFEST, Manifest, StoredFile
 from roughmdr.batch.task_result import TaskResult
 from roughmdr.errors import StoreError
 from roughmdr.storage.files import convert_os_errors, sync_folder
@@ -54,23 +54,19 @@ def read_task_result(folder: Path, file: str, sha256: str) -> TaskResult | None:
     return None
 
 
-class CheckpointStore:
+class CheckpointStore(Manifest):
     """The folder, while this process holds its lock."""
 
     def __init__(self, folder: Path, lock: FolderLock | None = None, *, of_share: bool = False) -> None:
-        self.folder, self._of_share, self._lock = folder, of_share, lock
+        super().__init__(folder)
+        self._of_share, self._lock = of_share, lock
         self.whole_path = folder.resolve()  # found now: the current folder may vanish
-        self.scene = ""
-        """TOML text of the scene of the batch that began the folder; of a share, of the last that went on there."""
-        self.versions = ""
-        self.replaces = ""
-        """Stamp of the file that this batch may replace (see ``CheckpointWriter``); empty for none."""
-        self._has_failed = False
-        self._tail, self._own = ManifestTail(folder), set[str]()
-        if self.alone:
-            self._check_manifest()
-        self._lines = self._new_lines()
-        self._next = 1 + max((int(line["file"][:-4]) for line in self._lines), default=0)
+        self._own = set[str]()
+        manifest = folder / MANIFEST
+        if self.alone and os.path.lexists(manifest) and not _is_regular(manifest):
+            raise StoreError(f"{manifest}: is no ordinary file; remove it")
+        self._files = self.new_files()
+        self._next = 1 + max((int(file.name[:-4]) for file in self._files), default=0)
         if not self.alone:
             self._next = (1 + secrets.randbelow(_FILES_OF_ONE)) * _FILES_OF_ONE
 
@@ -87,18 +83,13 @@ class CheckpointStore:
     @property
     def empty(self) -> bool:
         """Whether no task result is stored."""
-        return not self._lines and not self._own
-
-    @property
-    def ended(self) -> bool:
-        """Whether another process has written the result, and removed what led to it."""
-        return not self._tail.is_there
+        return not self._files and not self._own
 
     @property
     def removable(self) -> bool:
         """Whether the folder tells nothing that is needed: of a share also which runs failed."""
-        self._lines += self._new_lines()  # another process may have stored more, and ended
-        return self.empty and not (self._of_share and self._has_failed)
+        self.news()  # another process may have stored more, and ended
+        return self.empty and not (self._of_share and self.failed)
 
     def begin(self, scene: str, versions: str, replaces: str, command: str) -> None:
         """Note the batch that the folder is for, if it is a new one."""
@@ -115,15 +106,15 @@ class CheckpointStore:
 
     def readers(self) -> Iterator[Callable[[], TaskResult | None]]:
         """Yield a function for each task result that reads it; it returns None for one that is damaged."""
-        return self._readers(self._lines)
+        return self._readers(self._files)
 
     def news(self) -> Iterator[Callable[[], TaskResult | None]]:
         """Yield such functions for what other processes have stored since the last call."""
-        self._lines += (new := self._new_lines())
+        self._files += (new := [file for file in self.new_files() if file.name not in self._own])
         return self._readers(new)
 
-    def _readers(self, lines: list[dict[str, Any]]) -> Iterator[Callable[[], TaskResult | None]]:
-        return (partial(read_task_result, self.folder, line["file"], line["sha256"]) for line in lines)
+    def _readers(self, files: list[StoredFile]) -> Iterator[Callable[[], TaskResult | None]]:
+        return (partial(read_task_result, self.folder, file.name, file.sha256) for file in files)
 
     def write(self, result: TaskResult) -> None:
         """Store a task result for good; StoreError where that fails, and then nothing is changed."""
@@ -148,7 +139,6 @@ class CheckpointStore:
     def note_failed(self, runs: list[tuple[str, int]], remark: str) -> None:
         """Note runs that failed, as key of the cell and realisation, and why; the next batch repeats them."""
         self._append({"failed": runs, "remark": remark})
-        self._has_failed = True
 
     def note_complete(self) -> None:
         """Note that all runs of a share are kept."""
@@ -161,27 +151,8 @@ class CheckpointStore:
             for path in self.folder.iterdir():
                 if _OWN_FILES.fullmatch(path.name):
                     _remove(path)
-        self.scene, self.replaces, self._has_failed, self._lines, self._next = "", "", False, [], 1
-        self._tail, self._own = ManifestTail(self.folder), set()
-
-    def _check_manifest(self) -> None:
-        """Raise StoreError if the manifest is no ordinary file."""
-        manifest = self.folder / MANIFEST
-        if os.path.lexists(manifest) and not _is_regular(manifest):
-            raise StoreError(f"{manifest}: is no ordinary file; remove it")
-
-    def _new_lines(self) -> list[dict[str, Any]]:
-        """Return the lines of the manifest about task results that others have stored since the last call."""
-        lines: list[dict[str, Any]] = []
-        for line in self._tail.new_lines():
-            match line:
-                case {"scene": str(scene), "versions": str(versions), "replaces": str(replaces)}:
-                    self.scene, self.versions, self.replaces = scene, versions, replaces
-                case {"file": str(file), "sha256": str()} if file not in self._own:
-                    lines.append(line)
-                case {"failed": list()}:
-                    self._has_failed = True
-        return lines
+        super().__init__(self.folder)
+        self._files, self._own, self._next = [], set(), 1
 
     def _append(self, line: dict[str, Any]) -> None:
         """Append a line: that of a batch to a new manifest, too, any other only where no process has removed it."""
@@ -212,7 +183,7 @@ def _remove(path: Path) -> None:
 
 
 @contextmanager
-def locked_store(target: Path, *, of_share: bool = False, joins: BatchName | None = None) -> Iterator[CheckpointStore]:
+def locked_store(target: Path, *, of_share: bool = False, joins: str = "") -> Iterator[CheckpointStore]:
     """Open the store of a result or a share, made if need be, for this process and others that compute ``joins``.
 
     The last of them removes the folder if it tells nothing. StoreError where another process holds its lock.

@@ -12,7 +12,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roughmdr.batch.resume.keys import versions
-from roughmdr.batch.resume.lock import BatchName
 from roughmdr.batch.resume.store import SO_FAR, CheckpointStore, locked_store, store_folder
 from roughmdr.batch.task_result import TaskResult
 from roughmdr.errors import StoreError
@@ -37,6 +36,7 @@ class CheckpointWriter:
 
     def __init__(self, target: Path | None, stack: ExitStack, *, of_share: bool = False, joins: str = "") -> None:
         self.target, self._stack = target, stack
+        self._is_zarr = target is not None and target.suffix.lower() == ZARR_ENDING
         self.store: CheckpointStore | None = None
         self.joined: list[CheckpointStore] = []
         """Stores of shares, whose results are in the result as well."""
@@ -45,8 +45,7 @@ class CheckpointWriter:
         self._pending: deque[Future[None]] = deque()
         self._growing: GrowingStore | None = None
         if target is not None and len(os.fsencode(store_folder(target).name)) <= _MAX_NAME:
-            batch = BatchName(joins, versions()) if joins else None
-            self.store = stack.enter_context(locked_store(target, of_share=of_share, joins=batch))
+            self.store = stack.enter_context(locked_store(target, of_share=of_share, joins=joins))
 
     def clear(self) -> None:
         """Remove the checkpoints of an earlier run; the file that is at the output now, if one is, may be replaced."""
@@ -123,10 +122,6 @@ class CheckpointWriter:
             write_netcdf(result, self.target, self._folder)
         for store in [*([] if self.store is None else [self.store]), *self.joined] if complete else []:
             store.clear()
-
-    @property
-    def _is_zarr(self) -> bool:
-        return self.target is not None and self.target.suffix.lower() == ZARR_ENDING
 
     @property
     def _folder(self) -> Path | None:
