@@ -25,7 +25,7 @@ from roughmdr.scene import Scene
 from roughmdr.storage.room import IN_MEMORY
 from roughmdr.variables import ADHESION_CODES, DONE, FAILED, RUN_DIAGNOSTICS
 
-_SINGLE_TASK = 0.1  # a batch that takes less [s] is one task: to keep its parts on the disk takes as long
+_SINGLE_TASK = 0.1  # a batch that takes less [s] is one task: to load dask takes as long
 _MIN_SECONDS, _USUAL_SECONDS, _MAX_SECONDS = 0.05, 0.1, 3.0  # run time of a task [s]
 _MANY = 4000  # number of tasks from which each may take longer than usual
 _TASKS_PER_WORKER = 8  # least number of tasks for each worker, so that all workers finish together

@@ -25,7 +25,7 @@ from roughmdr.numerics.compiling import compiling
 from roughmdr.result.assemble import assemble, curves_so_far
 from roughmdr.runner.backend import Backend
 from roughmdr.runner.cluster import Cluster
-from roughmdr.runner.local import Pool, Sink
+from roughmdr.runner.local import Pool, Serial, Sink, Threads
 from roughmdr.runner.progress import Progress, progress, tell_compiling
 from roughmdr.runner.signals import Interrupted, interruptible
 from roughmdr.runner.together import BETWEEN_LOOKS, Together, WrittenElsewhereError
@@ -247,6 +247,7 @@ class Batch:
                 self._writer.grow(data, places.diagnostics["status"])
         if not on_cluster:
             prepare_all(self._plan, [runs for task in tasks for runs in task.ranges])
+        pool = Serial() if len(tasks) == 1 and isinstance(self._pool, Threads) else self._pool
 
         def sink(result: TaskResult) -> None:
             for cell, first in zip(result.cell.tolist(), result.first.tolist(), strict=True):
@@ -256,7 +257,7 @@ class Batch:
             display.add(done=result.realizations)
 
         # Workers of a cluster outlive the batch, and would keep their claims.
-        self._pool.compute(self._together.claimed(tasks, by_workers=not on_cluster), stop, sink)
+        pool.compute(self._together.claimed(tasks, by_workers=not on_cluster), stop, sink)
         return list(undone.values())
 
 
