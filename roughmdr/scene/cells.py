@@ -9,7 +9,7 @@ from typing import Any
 from pydantic import ValidationError
 
 from roughmdr.errors import Fault, RoughmdrError
-from roughmdr.scene.keys import key_readers, set_key
+from roughmdr.scene.keys import entry_at, key_readers, set_key
 from roughmdr.scene.scene import Scene
 from roughmdr.scene.sweep import describe_cell, read_sweep
 from roughmdr.schema.faults import find_faults, with_likely_names
@@ -83,10 +83,7 @@ def _fill_missing(base_table: dict[str, Any], first: dict[str, object]) -> tuple
     """Set the swept keys that the scene leaves out to their first values; return these keys, and faults."""
     filled, faults = set(), []
     for key, value in first.items():
-        inner: Any = base_table
-        for part in key.split("."):
-            inner = inner.get(part) if isinstance(inner, dict) else None
-        if inner is None:
+        if entry_at(key, base_table) is None:
             try:
                 set_key(base_table, key, value)
                 filled.add(key)

@@ -9,14 +9,7 @@ from roughmdr.errors import RoughmdrError
 from roughmdr.interaction.settings import Interaction
 from roughmdr.kernels.adhesion import Adhesion
 from roughmdr.scene.path import FlatPath
-from roughmdr.scene.sections import (
-    Accuracy,
-    AdhesionSection,
-    Batch,
-    Body,
-    MaterialSection,
-    Output,
-)
+from roughmdr.scene.sections import Accuracy, AdhesionSection, Batch, Body, MaterialSection, Output
 from roughmdr.scene.sweep import Sweep
 from roughmdr.schema.material import effective_modulus
 from roughmdr.schema.quantities import WholeNumber
