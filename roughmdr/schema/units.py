@@ -239,7 +239,7 @@ def axis_unit(largest: float, unit: str) -> tuple[float, str]:
 
 
 def _shown(largest: float, unit: str) -> tuple[int, str]:
-    """Return the unit in which numbers up to ``largest`` in ``unit`` are shown: its power of ten in SI, and its name."""
+    """Return the unit for showing numbers up to ``largest`` in ``unit``: its power of ten in SI, and its name."""
     if unit == DIMENSIONLESS:
         return 0, ""
     spelled, power = _BASES.get(dimension_of(unit), ((unit, 1),))[0]
