@@ -105,11 +105,6 @@ class _Nominal(Stage):
         if reason := _against_adhesion(scene.adhesion_model, SHAPES[scene.asperities.shape_name]):
             raise mismatch("adhesion.model", f"does not go with [nominal]: {reason}")
 
-    @classmethod
-    def alone(cls, scene: Given, section: "_Nominal | None") -> str:
-        """Return the key of the section."""
-        return "" if section is None else cls.key
-
     def more_variables(self, names: list[str]) -> list[str]:
         """Return the variables of the contact of the body."""
         return list(NOMINAL_VARIABLES)

@@ -111,11 +111,6 @@ class Plasticity(Stage):
             message = f"is {scene.material.poisson:g}; with plasticity.model = {self.model!r} it must be at least 0"
             raise mismatch("material.poisson", message)
 
-    @classmethod
-    def alone(cls, scene: Given, section: "Plasticity | None") -> str:
-        """Return the key of the section."""
-        return "" if section is None else cls.key
-
     def reason_against(self, scene: Given, estimator: str) -> str:
         """Return why the expected law is impossible where contacts adhere."""
         reason = "the expected law does not know contacts that adhere and yield"

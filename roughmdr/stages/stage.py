@@ -105,9 +105,9 @@ class Stage(Section):
     def alone(cls, scene: Given, section: Any) -> str:
         """Return the key at fault if two sections need the plain elastic law under a flat; empty if this does not.
 
-        ``section`` is None where the scene has none.
+        ``section`` is None where the scene has none. One whose own law is ``unlike`` that needs it.
         """
-        return ""
+        return cls.key if section is not None and cls.unlike else ""
 
     def reason_against(self, scene: Given, estimator: str) -> str:
         """Return why the estimator "stratified" or "expected" is impossible; empty where it is possible."""

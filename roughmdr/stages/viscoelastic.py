@@ -93,11 +93,6 @@ class Viscoelastic(Stage):
         if unknown := [name for name in scene.output.variables if name in _NOT_COMPUTED]:
             raise mismatch("output.variables", f"{', '.join(unknown)} cannot be computed with [viscoelastic]")
 
-    @classmethod
-    def alone(cls, scene: Given, section: "Viscoelastic | None") -> str:
-        """Return the key of the section."""
-        return "" if section is None else cls.key
-
     def check_path(self, values: "Floats") -> None:
         """Raise SceneError unless separations [m] fall, stay at the lowest and rise, in a finite time."""
         _check_order(values)
