@@ -84,7 +84,6 @@ class Conduction(Stage):
 
     @classmethod
     def check_without(cls, scene: Given) -> None:
-        """Raise a mismatch where a conductance is asked for."""
         _check_asked(scene, {})
 
     def check(self, scene: Given) -> None:
@@ -92,7 +91,6 @@ class Conduction(Stage):
         _check_asked(scene, self.factors)
 
     def inner_variables(self, names: list[str]) -> list[str]:
-        """Return the variables with the conductance radius in place of conductances."""
         return of_contacts(names)
 
     def law(self, scene: Given, contacts: Contacts) -> Law:
@@ -120,7 +118,6 @@ class Conduction(Stage):
 
     @classmethod
     def cites(cls, table: Mapping[str, Any], variables: list[str]) -> Mapping[str, str]:
-        """Return the papers where a conductance is asked for."""
         return {} if {RADIUS, *CONDUCTANCES}.isdisjoint(variables) else cls.papers
 
 

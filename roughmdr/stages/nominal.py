@@ -106,7 +106,6 @@ class _Nominal(Stage):
             raise mismatch("adhesion.model", f"does not go with [nominal]: {reason}")
 
     def more_variables(self, names: list[str]) -> list[str]:
-        """Return the variables of the contact of the body."""
         return list(NOMINAL_VARIABLES)
 
     def clear_above(self, scene: Given) -> float:
@@ -118,11 +117,9 @@ class _Nominal(Stage):
         return Contact.of(self.body, scene.effective_modulus, scene.adhesion_model).depth[0]
 
     def coarse(self) -> "_Nominal":
-        """Return the section with a larger error."""
         return self.model_copy(update={"error": _FORESEEN_ERROR})
 
     def expected_seconds(self, nodes: int, steps: int, *, adhering: bool) -> float:
-        """Return about how long the law takes [s]."""
         return _TABLES * nodes + steps * (_STEP + (_NODE * nodes if adhering else 0.0))
 
     def law(self, scene: Given, contacts: Contacts) -> Law:
@@ -139,7 +136,6 @@ class _Nominal(Stage):
         return law
 
     def attributes(self) -> dict[str, str]:
-        """Return the shape of the body."""
         return {self.key: self.shape}
 
 

@@ -112,13 +112,11 @@ class Plasticity(Stage):
             raise mismatch("material.poisson", message)
 
     def reason_against(self, scene: Given, estimator: str) -> str:
-        """Return why the expected law is impossible where contacts adhere."""
         reason = "the expected law does not know contacts that adhere and yield"
         return reason if estimator == "expected" and scene.work > 0.0 else ""
 
     @classmethod
     def left_out(cls, scene: Given, section: "Plasticity | None") -> Iterator[str]:
-        """Yield the line on plastic flow, and what the models leave out."""
         if section is None:
             yield from (
                 super().left_out(scene, section) if cls._fits(scene) else (f"{cls.about_absent}: contacts are elastic",)
@@ -139,7 +137,6 @@ class Plasticity(Stage):
 
     @classmethod
     def cites(cls, table: Mapping[str, Any], variables: list[str]) -> Mapping[str, str]:
-        """Return the papers on the shape, where a scene has the section."""
         papers = _PAPERS.get(table.get("asperities", {}).get("shape"), _PAPERS["paraboloid"])
         return dict.fromkeys(papers, "yielding") if cls.is_in(table) else {}
 
@@ -158,7 +155,6 @@ class Plasticity(Stage):
         return Body(scene.effective_modulus, strength, scene.work, poisson, shear, squared)
 
     def prepare(self, scene: Given, *, drawn: bool) -> None:
-        """Compile the law of drawn asperities, or the expected one."""
         if drawn:
             from roughmdr.stages.plastic.drawn import prepare
 

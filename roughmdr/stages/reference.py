@@ -61,7 +61,6 @@ class Reference(Stage):
     """Relative error of its force by the grid."""
 
     def check(self, scene: Given) -> None:
-        """Raise a mismatch with adhesion, and with other paths."""
         if scene.work > 0.0:
             raise mismatch("reference", "does not go with adhesion: boundary elements press without it")
         if scene.path.lateral is not None:
@@ -70,7 +69,6 @@ class Reference(Stage):
             raise mismatch("reference", f"goes with path.{', path.'.join(_CONTROLS)}, not with path.{scene.path.key}")
 
     def reason_against(self, scene: Given, estimator: str) -> str:
-        """Return that the expected law has no surface to press."""
         if estimator != "expected":
             return ""
         return "the reference presses single surfaces, which the expected law does not know"
@@ -89,12 +87,10 @@ class Reference(Stage):
             raise SceneError("reference: a surface that repeats needs patch, patch_x and patch_y, or nominal_area")
 
     def more_variables(self, names: list[str]) -> list[str]:
-        """Return the variables of the reference beside those that are asked for."""
         beside = {*_ALWAYS, *(f"reference_{name}" for name in names)}
         return [name for name in REFERENCE_VARIABLES if name in beside]
 
     def beside(self, scene: Given, separations: int, *, finest: bool) -> tuple[float, float]:
-        """Return about how long [s] and how much memory [byte] the reference of a realisation takes."""
         from roughmdr.elements.refine import LARGEST_GRID, first_points
 
         along = LARGEST_GRID if finest else first_points(scene.asperities.expected_count, self.error)
@@ -119,7 +115,6 @@ class Reference(Stage):
         return _EDGES * of_area * math.sqrt(error) if of_area else error
 
     def plan_lines(self, longest: str, finest: str) -> Iterator[str]:
-        """Yield the time and memory that the reference adds to each run."""
         yield f"boundary elements beside each realisation, their grid right to {self.error:g};"
         yield f"few and small contacts need finer grids: in all up to about {longest}, and {finest} for the grids"
 

@@ -54,14 +54,12 @@ class Tangential(Stage):
 
     @classmethod
     def usual_variables(cls, table: Mapping[str, Any]) -> list[str] | None:
-        """Return the variables of a lateral path."""
         path = table.get("path")
         lateral = path.get("lateral") if isinstance(path, dict) else getattr(path, "lateral", None)
         return None if lateral is None else list(DEFAULT_LATERAL_VARIABLES)
 
     @classmethod
     def check_without(cls, scene: Given) -> None:
-        """Raise a mismatch where lateral forces are asked for."""
         if subject := _asked(scene):
             key = "tangential.friction" if scene.path.lateral is not None else "tangential"
             raise mismatch(key, f"is missing; {subject} needs it")
@@ -91,12 +89,10 @@ class Tangential(Stage):
 
     @classmethod
     def alone(cls, scene: Given, section: "Tangential | None") -> str:
-        """Return the key of the lateral path."""
         return "" if scene.path.lateral is None else "path.lateral"
 
     @classmethod
     def left_out(cls, scene: Given, section: "Tangential | None") -> Iterator[str]:
-        """Yield lateral forces, or slip, where the scene does not need them."""
         yield from super().left_out(scene, section)
         if section is not None and scene.path.lateral is None:
             yield "slip: the scene has no path.lateral"
@@ -127,7 +123,6 @@ class Tangential(Stage):
         return SlipConstants(scene.effective_modulus, ratio, math.nan if self.friction is None else self.friction)
 
     def inner_variables(self, names: list[str]) -> list[str]:
-        """Return the variables of the normal law that lateral forces need."""
         from roughmdr.stages.slip import normal_variables
 
         return normal_variables(names)
@@ -180,7 +175,6 @@ class Tangential(Stage):
 
     @classmethod
     def cites(cls, table: Mapping[str, Any], variables: list[str]) -> Mapping[str, str]:
-        """Return the papers on partial slip, or that on the stiffness of contacts that stick."""
         if "lateral" in table.get("path", {}):
             return cls.papers
         return {"Mindlin1949": cls.papers["Mindlin1949"]} if _STICKING in variables else {}

@@ -74,7 +74,6 @@ class Viscoelastic(Stage):
 
     @classmethod
     def usual_variables(cls, table: Mapping[str, Any]) -> list[str] | None:
-        """Return those usual variables that a viscoelastic law has."""
         if table.get(cls.key) is None:
             return None
         return [name for name in DEFAULT_VARIABLES if name not in _NOT_COMPUTED]
@@ -105,12 +104,10 @@ class Viscoelastic(Stage):
                 raise _fault("viscoelastic", "has speeds by which the path takes longer than a float holds")
 
     def coordinates(self, values: "Floats") -> "dict[str, Floats]":
-        """Return the time of each step [s] since the first."""
         return {TIME.name: self.motion.time(values)}
 
     @classmethod
     def left_out(cls, scene: Given, section: "Viscoelastic | None") -> Iterator[str]:
-        """Yield the line on relaxation, for contacts without adhesion."""
         if section is None and scene.work == 0.0:
             if not scene.unlike:
                 yield "hysteresis: without adhesion a contact has no memory"
