@@ -11,7 +11,7 @@ from roughmdr.schema.faults import mismatch
 from roughmdr.schema.quantities import Quantity
 from roughmdr.stages.conduction import RADIUS, Conduction, of_contacts
 from roughmdr.stages.given_scene import Given
-from roughmdr.stages.stage import Contacts, Drawn, Law, Stage
+from roughmdr.stages.stage import Contacts, Law, Stage
 from roughmdr.variables import REFERENCE_VARIABLES
 
 if TYPE_CHECKING:
@@ -120,24 +120,25 @@ class Reference(Stage):
 
     def law(self, scene: Given, contacts: Contacts) -> Law:
         """Return the law with the variables of the reference, of asperities that were drawn."""
-        if contacts.drawn is None:
+        problem, realization = contacts.problem, contacts.realization
+        if problem is None or realization is None:
             return contacts.law
-        drawn = contacts.drawn
 
         def law(path: "Path", names: list[str]) -> "LoadSeparation":
             asked = [name for name in names if name not in REFERENCE_VARIABLES]
-            return self._beside(contacts.law(path, asked).only(asked), scene, path, drawn)
+            return self._beside(contacts.law(path, asked).only(asked), scene, path, problem.ensemble, realization)
 
         return law
 
-    def _beside(self, law: "LoadSeparation", scene: Given, path: "Path", drawn: Drawn) -> "LoadSeparation":
+    def _beside(
+        self, law: "LoadSeparation", scene: Given, path: "Path", ensemble: "Ensemble", realization: int
+    ) -> "LoadSeparation":
         """Return the law of a realisation with the variables of its reference; NaN where that has no equilibrium."""
         from roughmdr.elements.refine import errors, solve_to_error, solve_under_loads
         from roughmdr.elements.surface import surface_of
         from roughmdr.loading.machine import MachinePath
 
-        ensemble = drawn.ensemble
-        height_map = scene.asperities.height_map(scene.seed, drawn.realization)
+        height_map = scene.asperities.height_map(scene.seed, realization)
         loaded = isinstance(path, MachinePath)
         separation = law.variables["separation"] if loaded else path.values
         highest = float(ensemble.height.max())

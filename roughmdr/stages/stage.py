@@ -22,13 +22,6 @@ Law = Callable[["Path", list[str]], "LoadSeparation"]
 """A path and the variables asked for -> the law along it, which may have other variables too."""
 
 
-class Drawn(NamedTuple):
-    """The asperities of one realisation."""
-
-    ensemble: "Ensemble"
-    realization: int
-
-
 class Contacts(NamedTuple):
     """The contacts whose law a stage changes."""
 
@@ -38,10 +31,10 @@ class Contacts(NamedTuple):
     """Return the height of the highest summit [m]; -inf where there is none."""
     nominal_area: float | None
     """[m2]"""
-    drawn: Drawn | None = None
-    """The asperities themselves; None for an expected law, and where ``plan`` foresees the law from a part of them."""
     problem: "Problem | None" = None
-    """The asperities, or that part of them, with their material; None for an expected law."""
+    """The asperities, or a part of them, with their material; None for an expected law."""
+    realization: int | None = None
+    """Number of the realisation; None for an expected law, and where ``plan`` foresees the law from that part."""
 
 
 class Stage(Section):
