@@ -41,11 +41,7 @@ class FlatMotion(NamedTuple):
         """Return the contacts at each step of separations [m] that fall, and then rise.
 
         At ``clear`` [m] and above nothing touches. While the flat rises they are those of the time t1 of loading with
-        ∫_t1^t phi(t - s) h'(s) ds = 0 [1]_: one time for all shapes and heights.
-
-        References
-        ----------
-        .. [1] T. C. T. Ting, J. Appl. Mech. 33 (1966) 845.
+        ∫_t1^t phi(t - s) h'(s) ds = 0: one time for all shapes and heights (Ting 1966, as in ``law``).
         """
         turn = int(np.argmin(separation))
         lowest, top = float(separation[turn]), max(clear, float(separation.max()))
