@@ -86,13 +86,21 @@ class _Sections(Section):
     @property
     def effective_modulus(self) -> float:
         """E* [Pa] (H 43)."""
-        material = self.material
-        if material.effective_modulus is not None:
-            return material.effective_modulus
-        assert material.modulus is not None  # as ``MaterialSection`` validates
-        assert material.poisson is not None
-        counter = () if self.counter is None else (self.counter.modulus, self.counter.poisson)
-        return effective_modulus(material.modulus, material.poisson, *counter)
+        if self.material.effective_modulus is not None:
+            return self.material.effective_modulus
+        assert self.bodies is not None  # as ``MaterialSection`` validates
+        return effective_modulus(*self.bodies)
+
+    @property
+    def bodies(self) -> tuple[float, ...] | None:
+        """Modulus [Pa] and Poisson's ratio of both bodies, or of the first where the counter body is rigid.
+
+        None where only E* is known.
+        """
+        material, counter = self.material, self.counter
+        if material.modulus is None or material.poisson is None:
+            return None
+        return (material.modulus, material.poisson, *(() if counter is None else (counter.modulus, counter.poisson)))
 
     @property
     def work(self) -> float:

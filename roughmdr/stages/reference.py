@@ -217,22 +217,18 @@ class Reference(Stage):
         )
 
 
-def _remarks(error: float, asked: float, shape: tuple[int, int], lost: int) -> list[str]:
-    """Return the warnings that boundary elements miss the error asked for, or have no equilibrium."""
-    lines = []
+def _remarks(error: float, asked: float, shape: tuple[int, int], lost: int) -> Iterator[str]:
+    """Yield warnings that boundary elements miss the error asked for, or have no equilibrium."""
     nx, ny = shape
     if math.isinf(error):
-        lines.append(f"reference: {nx} x {ny} points miss the contacts; none of its forces is right")
+        yield f"reference: {nx} x {ny} points miss the contacts; none of its forces is right"
     elif error > asked:
-        lines.append(
+        yield (
             f"reference: {nx} x {ny} points give the force to {error:.2g} only; {asked:g} was asked for, and is out of "
             "reach of finer grids in about a minute: contacts of few points bear the force"
         )
     if lost:
-        lines.append(
-            f"reference: no equilibrium at {lost} steps, where the flat is below the mean height of the surface"
-        )
-    return lines
+        yield f"reference: no equilibrium at {lost} steps, where the flat is below the mean height of the surface"
 
 
 def _percent(share: float, sign: str = "") -> str:

@@ -66,9 +66,8 @@ class Tangential(Stage):
 
     def check(self, scene: Given) -> None:
         """Raise a mismatch where lateral forces are asked for and another section forbids them, or G*/E* is unknown."""
-        lateral, bodies = scene.path.lateral is not None, _bodies_of(scene)
-        subject = _asked(scene)
-        if self.stiffness_ratio is not None and bodies is not None:
+        lateral, subject = scene.path.lateral is not None, _asked(scene)
+        if self.stiffness_ratio is not None and scene.bodies is not None:
             raise mismatch("tangential.stiffness_ratio", "follows from the modulus and poisson of [material] already")
         if not subject:
             return
@@ -101,7 +100,7 @@ class Tangential(Stage):
         """Yield effects that the theory neglects in lateral forces that are asked for, or are on the path."""
         if TANGENTIAL_VARIABLES.keys().isdisjoint(scene.output.variables):
             return
-        bodies = _bodies_of(scene)
+        bodies = scene.bodies
         if bodies is None:
             yield "shear is taken not to move the surface along the normal, as where Dundurs' beta is 0"
         elif beta := dundurs_beta(*bodies):
@@ -111,8 +110,7 @@ class Tangential(Stage):
 
     def ratio(self, scene: Given) -> float | None:
         """Return G*/E* [1]; None where it is not known."""
-        bodies = _bodies_of(scene)
-        return self.stiffness_ratio if bodies is None else stiffness_ratio(*bodies)
+        return self.stiffness_ratio if scene.bodies is None else stiffness_ratio(*scene.bodies)
 
     def constants(self, scene: Given) -> "SlipConstants":
         """Return the constants of the contacts, for a scene with a known G*/E*."""
@@ -187,17 +185,6 @@ def _asked(scene: Given) -> str:
     if not lateral and (wrong := [name for name in asked if name != _STICKING]):
         raise mismatch("output.variables", f"{wrong[0]} needs a lateral path: path.lateral")
     return "path.lateral" if lateral else f"{_STICKING} among output.variables" if asked else ""
-
-
-def _bodies_of(scene: Given) -> tuple[float, ...] | None:
-    """Return modulus [Pa] and Poisson's ratio of both bodies, or of the first where the counter body is rigid.
-
-    None where only E* is known.
-    """
-    material, counter = scene.material, scene.counter
-    if material.modulus is None or material.poisson is None:
-        return None
-    return (material.modulus, material.poisson, *(() if counter is None else (counter.modulus, counter.poisson)))
 
 
 def _separation(normal: Law, path: "LateralPath") -> float:
