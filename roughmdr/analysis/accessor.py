@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING, Any
 
 from numpy.typing import ArrayLike
 
-from roughmdr.schema.listing import html_listing, listing
+from roughmdr.schema.wording import html_listing, listing
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -18,9 +18,8 @@ from roughmdr.scene.sections import Accuracy
 from roughmdr.scene.separation import CLEAR, end_in_words
 from roughmdr.scene.sweep import Axis
 from roughmdr.schema.faults import mismatch
-from roughmdr.schema.listing import html_listing, listing
 from roughmdr.schema.units import format_quantity, millipascals
-from roughmdr.schema.wording import printable, short_repr
+from roughmdr.schema.wording import html_listing, listing, printable, short_repr
 from roughmdr.stages import STAGES
 from roughmdr.variables import CONTROLS, DEFAULT_VARIABLES, OUTPUT_VARIABLES, PRELOADS
 
