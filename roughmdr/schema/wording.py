@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator
 
 _MIN_SIMILARITY = 0.7  # least ratio of difflib: one or two letters of a word differ
 _LAYOUT = "\n\t"
-_MAX_LENGTH = 160  # of a name or a text of a listing, in characters
+_MAX_LENGTH = 160  # characters of a name, or of a text, in a listing
 _NUMBER = re.compile(r"\d[\d.]*(e[+-]?\d+)?")
 
 

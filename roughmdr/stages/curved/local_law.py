@@ -97,14 +97,12 @@ class LocalLaw(NamedTuple):
     def pressure(self, s: Floats, memory: Floats) -> tuple[Floats, Floats]:
         """Return p [Pa] and dp/ds [Pa/m] at separations s [m], reached monotonically after ``memory``."""
         within = np.maximum(s, self.closest)
-        pressure, slope = self._tabulated(within) if self.table is not None else self._remembered(within, memory)
+        if self.table is None:
+            pressure, slope = self._remembered(within, memory)
+        else:
+            pressure, stiffness = _read(self.table, within, _OF_SLOPE)
+            slope = -stiffness
         return pressure, np.where(s < self.closest, 0.0, slope)
-
-    def _tabulated(self, s: Floats) -> tuple[Floats, Floats]:
-        """Return p and dp/ds without adhesion."""
-        assert self.table is not None
-        pressure, stiffness = _read(self.table, s, _OF_SLOPE)
-        return pressure, -stiffness
 
     def _remembered(self, s: Floats, memory: Floats) -> tuple[Floats, Floats]:
         """Return p and dp/ds with adhesion, contacts that are made or lost as s changes included."""
