@@ -98,7 +98,7 @@ class Stage(Section):
     def alone(cls, scene: Given, section: Any) -> str:
         """Return the key at fault if two sections need the plain elastic law under a flat; empty if this does not.
 
-        ``section`` is None where the scene has none. One whose own law is ``unlike`` that needs it.
+        ``section`` is None where the scene has none. A section that is ``unlike`` needs it, unless it says otherwise.
         """
         return cls.key if section is not None and cls.unlike else ""
 
