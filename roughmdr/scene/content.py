@@ -15,8 +15,7 @@ from roughmdr.schema.material import effective_modulus
 from roughmdr.schema.quantities import WholeNumber
 from roughmdr.schema.section import Section
 from roughmdr.stages import STAGES
-from roughmdr.stages.given_scene import AnySection
-from roughmdr.stages.stage import Stage
+from roughmdr.stages.stage import AnySection, Stage
 
 _NEGLIGIBLE = 0.01  # share of the required error that is negligible
 

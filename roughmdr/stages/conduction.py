@@ -10,8 +10,7 @@ from pydantic import model_validator
 from roughmdr.errors import OutOfRange
 from roughmdr.schema.faults import mismatch
 from roughmdr.schema.quantities import EntryError, Quantity
-from roughmdr.stages.given_scene import Given
-from roughmdr.stages.stage import Contacts, Law, Stage
+from roughmdr.stages.stage import Contacts, Given, Law, Stage
 from roughmdr.variables import CONDUCTANCES
 
 if TYPE_CHECKING:

@@ -12,8 +12,7 @@ from roughmdr.schema.faults import mismatch
 from roughmdr.schema.quantities import EntryError, Quantity
 from roughmdr.schema.units import DIMENSIONLESS
 from roughmdr.shapes import SCENE_SHAPES, SHAPES, Shape
-from roughmdr.stages.given_scene import Given
-from roughmdr.stages.stage import Contacts, Law, Stage
+from roughmdr.stages.stage import Contacts, Given, Law, Stage
 from roughmdr.variables import NOMINAL_VARIABLES
 
 if TYPE_CHECKING:

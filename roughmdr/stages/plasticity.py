@@ -12,8 +12,7 @@ from pydantic_core import PydanticCustomError
 from roughmdr.errors import RoughmdrError
 from roughmdr.schema.faults import mismatch
 from roughmdr.schema.quantities import EntryError, Quantity
-from roughmdr.stages.given_scene import Given
-from roughmdr.stages.stage import Contacts, Law, Stage
+from roughmdr.stages.stage import Contacts, Given, Law, Stage
 
 if TYPE_CHECKING:
     from roughmdr.aggregate.law import LoadSeparation

@@ -10,8 +10,7 @@ from roughmdr.errors import SceneError
 from roughmdr.schema.faults import mismatch
 from roughmdr.schema.quantities import Quantity
 from roughmdr.stages.conduction import RADIUS, Conduction, of_contacts
-from roughmdr.stages.given_scene import Given
-from roughmdr.stages.stage import Contacts, Law, Stage
+from roughmdr.stages.stage import Contacts, Given, Law, Stage
 from roughmdr.variables import REFERENCE_VARIABLES
 
 if TYPE_CHECKING:

@@ -6,20 +6,60 @@ section that changes nothing. None of them imports physics before it is needed: 
 
 import math
 from collections.abc import Callable, Iterator, Mapping
-from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Self
+from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Protocol, Self, TypeVar
 
 from roughmdr.schema.section import Section
-from roughmdr.stages.given_scene import Given
 
 if TYPE_CHECKING:
     from roughmdr.aggregate.law import LoadSeparation
     from roughmdr.aggregate.problem import Problem
-    from roughmdr.ensemble import Ensemble
+    from roughmdr.ensemble import Ensemble, Source
+    from roughmdr.kernels.adhesion import Adhesion
     from roughmdr.loading.lateral import Path
     from roughmdr.numerics.arguments import Floats
 
+AnySection = TypeVar("AnySection", bound=Section)
 Law = Callable[["Path", list[str]], "LoadSeparation"]
 """A path and the variables asked for -> the law along it, which may have other variables too."""
+
+
+class Given(Protocol):
+    """The parts of a scene without a sweep that stages use, as ``scene.content`` declares them: it imports stages."""
+
+    @property
+    def seed(self) -> int: ...
+    @property
+    def material(self) -> Any: ...
+    @property
+    def path(self) -> Any: ...
+    @property
+    def output(self) -> Any: ...
+    @property
+    def accuracy(self) -> Any: ...
+    @property
+    def interaction(self) -> Any: ...
+    @property
+    def asperities(self) -> "Source": ...
+    @property
+    def effective_modulus(self) -> float: ...
+    @property
+    def bodies(self) -> tuple[float, ...] | None: ...
+    @property
+    def work(self) -> float: ...
+    @property
+    def adhesion_model(self) -> "Adhesion": ...
+    @property
+    def nominal_area(self) -> float | None: ...
+    @property
+    def repeats(self) -> bool: ...
+    @property
+    def estimators(self) -> tuple[str, ...]: ...
+    @property
+    def unlike(self) -> str: ...
+    @property
+    def stages(self) -> "tuple[Stage, ...]": ...
+    def reason_against(self, estimator: str) -> str: ...
+    def stage(self, kind: type[AnySection]) -> AnySection | None: ...
 
 
 class Contacts(NamedTuple):

@@ -9,8 +9,7 @@ from roughmdr.schema.faults import mismatch
 from roughmdr.schema.material import dundurs_beta, stiffness_ratio
 from roughmdr.schema.quantities import Quantity
 from roughmdr.stages.conduction import RADIUS
-from roughmdr.stages.given_scene import Given
-from roughmdr.stages.stage import Contacts, Law, Stage
+from roughmdr.stages.stage import Contacts, Given, Law, Stage
 from roughmdr.variables import DEFAULT_LATERAL_VARIABLES, TANGENTIAL_VARIABLES
 
 if TYPE_CHECKING:

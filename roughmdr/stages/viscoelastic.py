@@ -12,8 +12,7 @@ from roughmdr.schema.faults import mismatch
 from roughmdr.schema.quantities import EntryError, Quantity
 from roughmdr.schema.section import Section
 from roughmdr.schema.units import format_quantity
-from roughmdr.stages.given_scene import Given
-from roughmdr.stages.stage import Contacts, Law, Stage
+from roughmdr.stages.stage import Contacts, Given, Law, Stage
 from roughmdr.variables import DEFAULT_VARIABLES, TIME
 
 if TYPE_CHECKING:
