@@ -15,7 +15,7 @@ from roughmdr.pictures.plot import plot
 from roughmdr.pictures.sketch import sketch
 from roughmdr.result.curves import result_of
 from roughmdr.result.interpolation import at_value
-from roughmdr.schema.listing import html_listing, listing
+from roughmdr.schema.wording import html_listing, listing
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -12,7 +12,7 @@ from roughmdr.ensemble import Ensemble
 from roughmdr.loading.lateral import LateralPath, Path
 from roughmdr.loading.machine import MachinePath
 from roughmdr.scene import Scene
-from roughmdr.stages.stage import Contacts, Drawn
+from roughmdr.stages.stage import Contacts
 
 _NEGLIGIBLE = 1e-16  # mean number of asperities above the highest summit of an expected law
 _MOST_DRAWN = 100_000  # number of asperities that are drawn evenly to tell which contacts of an expected law yield
@@ -46,8 +46,7 @@ def simulate_problem(
     def highest() -> float:
         return float(ensemble.height.max(initial=-np.inf))
 
-    drawn = None if realization is None else Drawn(ensemble, realization)
-    contacts = Contacts(law, highest, ensemble.nominal_area, drawn, problem)
+    contacts = Contacts(law, highest, ensemble.nominal_area, problem, realization)
     return _staged(scene, path, variables, contacts, lambda: problem)
 
 

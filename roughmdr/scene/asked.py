@@ -9,7 +9,7 @@ from pydantic import model_validator
 
 from roughmdr.errors import RoughmdrError
 from roughmdr.numerics.arguments import Floats
-from roughmdr.scene.separation import Separation, SeparationReader
+from roughmdr.scene.separation import Separation, SeparationReader, end_in_words
 from roughmdr.schema.quantities import EntryError, Quantity, Reader
 from roughmdr.schema.section import Section
 from roughmdr.schema.units import DIMENSIONLESS, format_quantity
@@ -100,12 +100,8 @@ class Asked(Section):
     @property
     def in_words(self) -> str:
         """The quantity and where it is asked for."""
-        at, place = getattr(self, f"{_AT}{self.given}"), self.given
-        if isinstance(at, Separation):
-            where = f"{at.value:g} sigma" if at.in_sigma else format_quantity(at.value, CONTROLS[place])
-        else:
-            where = format_quantity(at, CONTROLS[place])
-        return f"{self.quantity.replace('_', ' ')} at a {place} of {where}"
+        where = end_in_words(getattr(self, f"{_AT}{self.given}"), CONTROLS[self.given])
+        return f"{self.quantity.replace('_', ' ')} at a {self.given} of {where}"
 
     def error_in_words(self, error: float) -> str:
         """Return an error of the quantity with its unit."""

@@ -1,7 +1,6 @@
 """Validation of a scene's table: the scene itself and the cells of its sweep, or everything that is wrong."""
 
 import copy
-from collections import Counter
 from contextlib import suppress
 from pathlib import Path
 from typing import Any
@@ -9,7 +8,7 @@ from typing import Any
 from pydantic import ValidationError
 
 from roughmdr.errors import Fault, RoughmdrError
-from roughmdr.scene.keys import key_readers, set_key
+from roughmdr.scene.keys import entry_at, key_readers, set_key
 from roughmdr.scene.scene import Scene
 from roughmdr.scene.sweep import describe_cell, read_sweep
 from roughmdr.schema.faults import find_faults, with_likely_names
@@ -36,19 +35,17 @@ def validate(table: dict[str, Any], path: Path | None) -> tuple[Scene | None, li
         return None, faults
     sections = {name: getattr(base, name) for name in Scene.model_fields if name != "sweep"}
     cache: _SectionCache = {}
-    cells, fault_counts, first_cells = [], Counter[Fault](), dict[Fault, str]()
+    cells, wrong = [], dict[Fault, list[dict[str, object]]]()
     for values in sweep.cells():
         cell, cell_faults = _validate_cell(base_table, values, path, sections, cache)
         for fault in cell_faults:
-            fault_counts[fault] += 1
-            first_cells.setdefault(fault, describe_cell(values))
+            wrong.setdefault(fault, []).append(values)
         if cell is not None:
             cells.append(cell)
-    if fault_counts:
-        faults = []
-        for fault, count in fault_counts.items():
-            where = f"{'' if count == 1 else f'in {count} cells, first '}where {first_cells[fault]}"
-            faults.append(fault._replace(message=f"{fault.message} ({where})"))
+    for fault, where in wrong.items():
+        several = f"in {len(where)} cells, first " if len(where) > 1 else ""
+        faults.append(fault._replace(message=f"{fault.message} ({several}where {describe_cell(where[0])})"))
+    if faults:
         return None, faults
     given = {name: sections[name] for name in base.model_fields_set}
     return Scene.of(table, path, {"sweep": sweep, **given}, tuple(cells)), []
@@ -83,10 +80,7 @@ def _fill_missing(base_table: dict[str, Any], first: dict[str, object]) -> tuple
     """Set the swept keys that the scene leaves out to their first values; return these keys, and faults."""
     filled, faults = set(), []
     for key, value in first.items():
-        inner: Any = base_table
-        for part in key.split("."):
-            inner = inner.get(part) if isinstance(inner, dict) else None
-        if inner is None:
+        if entry_at(key, base_table) is None:
             try:
                 set_key(base_table, key, value)
                 filled.add(key)

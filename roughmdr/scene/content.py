@@ -9,21 +9,13 @@ from roughmdr.errors import RoughmdrError
 from roughmdr.interaction.settings import Interaction
 from roughmdr.kernels.adhesion import Adhesion
 from roughmdr.scene.path import FlatPath
-from roughmdr.scene.sections import (
-    Accuracy,
-    AdhesionSection,
-    Batch,
-    Body,
-    MaterialSection,
-    Output,
-)
+from roughmdr.scene.sections import Accuracy, AdhesionSection, Batch, Body, MaterialSection, Output
 from roughmdr.scene.sweep import Sweep
 from roughmdr.schema.material import effective_modulus
 from roughmdr.schema.quantities import WholeNumber
 from roughmdr.schema.section import Section
 from roughmdr.stages import STAGES
-from roughmdr.stages.given_scene import AnySection
-from roughmdr.stages.stage import Stage
+from roughmdr.stages.stage import AnySection, Stage
 
 _NEGLIGIBLE = 0.01  # share of the required error that is negligible
 
@@ -93,13 +85,21 @@ class _Sections(Section):
     @property
     def effective_modulus(self) -> float:
         """E* [Pa] (H 43)."""
-        material = self.material
-        if material.effective_modulus is not None:
-            return material.effective_modulus
-        assert material.modulus is not None  # as ``MaterialSection`` validates
-        assert material.poisson is not None
-        counter = () if self.counter is None else (self.counter.modulus, self.counter.poisson)
-        return effective_modulus(material.modulus, material.poisson, *counter)
+        if self.material.effective_modulus is not None:
+            return self.material.effective_modulus
+        assert self.bodies is not None  # as ``MaterialSection`` validates
+        return effective_modulus(*self.bodies)
+
+    @property
+    def bodies(self) -> tuple[float, ...] | None:
+        """Modulus [Pa] and Poisson's ratio of both bodies, or of the first where the counter body is rigid.
+
+        None where only E* is known.
+        """
+        material, counter = self.material, self.counter
+        if material.modulus is None or material.poisson is None:
+            return None
+        return (material.modulus, material.poisson, *(() if counter is None else (counter.modulus, counter.poisson)))
 
     @property
     def work(self) -> float:

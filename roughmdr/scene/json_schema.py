@@ -15,14 +15,7 @@ from roughmdr.ensemble.random import distribution_reader
 from roughmdr.scene.keys import key_readers
 from roughmdr.scene.scene import Scene
 from roughmdr.scene.sweep import ENDS, NUM, may_be_swept
-from roughmdr.schema.json_schema import (
-    JsonSchema,
-    described,
-    of_any_name,
-    of_any_type,
-    only_required,
-    without_required,
-)
+from roughmdr.schema.json_schema import JsonSchema, described, of_any_name, of_any_type, only_required, without_required
 from roughmdr.schema.quantities import Quantity, Reader
 from roughmdr.schema.section import Section, meanings, reader_of
 from roughmdr.schema.units import DIMENSIONLESS

@@ -149,19 +149,12 @@ class FlatPath(Section):
     @property
     def to_preload(self) -> Preload | None:
         """The quantity, with its value, that loading goes on to; None where the path is given otherwise."""
-        return next(
-            (
-                Preload(quantity, getattr(self, key))
-                for key, (quantity, _) in PRELOADS.items()
-                if getattr(self, key) is not None
-            ),
-            None,
-        )
+        return Preload(PRELOADS[self.key][0], getattr(self, self.key)) if self.key in PRELOADS else None
 
     @property
     def control(self) -> str:
         """The quantity that is controlled."""
-        return next((name for name in CONTROLS if getattr(self, name) is not None), TRAVEL.name)
+        return self.key if self.key in CONTROLS else TRAVEL.name
 
     @property
     def key(self) -> str:

@@ -3,14 +3,13 @@
 import os
 import re
 from collections.abc import Callable, Iterable, Mapping
-from functools import partial, reduce
-from operator import getitem
+from functools import partial
 from pathlib import Path
 from typing import Any, NamedTuple
 
 from roughmdr.errors import Fault, RoughmdrError, SceneError
 from roughmdr.scene.cells import validate
-from roughmdr.scene.keys import set_key
+from roughmdr.scene.keys import entry_at, set_key
 from roughmdr.scene.scene import Scene
 from roughmdr.scene.sweep import flatten
 from roughmdr.schema.toml_text import key_lines, line_of, parse_toml, unquote_key
@@ -165,7 +164,7 @@ def _apply_change(table: dict[str, Any], change: _Change) -> None:
                 raise RoughmdrError("sweep is not a table")
             table["sweep"] = sweep | {key: _merge_range(sweep.get(key), new) for key, new in alone["sweep"].items()}
         else:
-            set_key(table, dotted, reduce(getitem, parts, alone))
+            set_key(table, dotted, entry_at(dotted, alone))
             _remove_from_sweep(table, dotted)
     except RoughmdrError as error:
         raise SceneError(f"{change.by} {change.name}: {error}") from None

@@ -15,14 +15,13 @@ from roughmdr.scene.content import Sections
 from roughmdr.scene.lateral import displacements
 from roughmdr.scene.path import FlatPath
 from roughmdr.scene.sections import Accuracy
-from roughmdr.scene.separation import CLEAR, Separation, Target
+from roughmdr.scene.separation import CLEAR, end_in_words
 from roughmdr.scene.sweep import Axis
 from roughmdr.schema.faults import mismatch
-from roughmdr.schema.listing import html_listing, listing
 from roughmdr.schema.units import format_quantity, millipascals
-from roughmdr.schema.wording import printable, short_repr
+from roughmdr.schema.wording import html_listing, listing, printable, short_repr
 from roughmdr.stages import STAGES
-from roughmdr.variables import CONTROLS, CURVE_VARIABLES, DEFAULT_VARIABLES, OUTPUT_VARIABLES, PRELOADS
+from roughmdr.variables import CONTROLS, DEFAULT_VARIABLES, OUTPUT_VARIABLES, PRELOADS
 
 _SOFTEST = 1.0
 """Effective modulus [Pa] below which no solid is known: the softest gels have some 10 Pa."""
@@ -241,27 +240,16 @@ def path_in_words(path: FlatPath) -> str:
     """Return the ends of a path, and its steps."""
     given = getattr(path, path.key)
     if path.lateral is not None:
-        held = f"{path.key} {_end(given, CONTROLS[path.key])}"
+        held = f"{path.key} {end_in_words(given, CONTROLS[path.key])}"
         steps = f"lateral in {displacements(path.lateral).size} steps at {held}"
     elif isinstance(given, list):
         steps = f"{path.key} in {len(given)} steps"
     elif path.to_preload:
         steps = f"{path.key} {format_quantity(given, PRELOADS[path.key][1])} in {path.steps} steps"
     else:
-        start = CLEAR if path.starts_clear else _end(given.start, CONTROLS[path.key])
-        steps = f"{path.key} from {start} to {_end(given.stop, CONTROLS[path.key])} in {given.steps} steps"
+        start = CLEAR if path.starts_clear else end_in_words(given.start, CONTROLS[path.key])
+        steps = f"{path.key} from {start} to {end_in_words(given.stop, CONTROLS[path.key])} in {given.steps} steps"
     return f"{steps}{f', held for {path.hold}' if path.hold else ''}{', and back' if path.unload else ''}"
-
-
-def _end(end: Separation | Target | float, unit: str) -> str:
-    """Return an end of a range with its unit."""
-    if isinstance(end, Target):
-        return (
-            f"a {end.variable.replace('_', ' ')} of {format_quantity(end.value, CURVE_VARIABLES[end.variable].units)}"
-        )
-    if isinstance(end, Separation):
-        return f"{end.value:g} sigma" if end.in_sigma else format_quantity(end.value, unit)
-    return format_quantity(end, unit)
 
 
 def axis_in_words(axis: Axis) -> str:

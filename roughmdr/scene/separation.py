@@ -10,7 +10,8 @@ from roughmdr.errors import RoughmdrError
 from roughmdr.schema.json_schema import JsonSchema
 from roughmdr.schema.quantities import Quantity, Reader
 from roughmdr.schema.section import Section
-from roughmdr.schema.units import DIMENSIONLESS, NUMBER, quantity, quantity_pattern
+from roughmdr.schema.units import DIMENSIONLESS, NUMBER, format_quantity, quantity, quantity_pattern
+from roughmdr.variables import CURVE_VARIABLES
 
 _SIGMA = re.compile(rf"\s*({NUMBER})\s*sigma\s*")
 
@@ -88,3 +89,13 @@ class Target(Section):
     def value(self) -> float:
         """The value that is to be reached, in SI."""
         return self.pressure or self.contact_fraction or 0.0
+
+
+def end_in_words(end: Separation | Target | float, unit: str) -> str:
+    """Return an end of a range with its unit."""
+    if isinstance(end, Target):
+        value = format_quantity(end.value, CURVE_VARIABLES[end.variable].units)
+        return f"a {end.variable.replace('_', ' ')} of {value}"
+    if isinstance(end, Separation):
+        return f"{end.value:g} sigma" if end.in_sigma else format_quantity(end.value, unit)
+    return format_quantity(end, unit)

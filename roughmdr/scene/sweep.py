@@ -19,14 +19,9 @@ from roughmdr.stages import STAGES
 from roughmdr.storage.labelled import Array
 from roughmdr.variables import CONTROLS, PRELOADS, swept_name
 
-SECTIONS = (
-    "material",
-    "counter",
-    "adhesion",
-    "asperities",
-    "interaction",
-    *sorted(stage.key for stage in STAGES if stage.swept),
-)
+SECTIONS = {"material", "counter", "adhesion", "asperities", "interaction"} | {
+    stage.key for stage in STAGES if stage.swept
+}
 _STOP = "path.separation.stop"
 _PATH_KEYS = (
     *(f"path.{control}.{end}" for control in CONTROLS for end in ("start", "stop")),

@@ -3,7 +3,6 @@
 A number is in SI, or a string with a unit, as in a scene. A dimension is spelled as in ``units``.
 """
 
-from functools import cache
 from typing import Any
 
 import numpy as np
@@ -15,14 +14,10 @@ from roughmdr.schema.quantities import Quantity, from_text
 from roughmdr.schema.units import as_text
 
 
-@cache
-def _positive(dimension: str, zero: bool) -> Quantity:
-    return Quantity(dimension, at_least=0.0) if zero else Quantity(dimension, above=0.0)
-
-
 def check_number(name: str, value: float | str, dimension: str, *, zero: bool = False) -> float:
     """Return ``value`` in SI; OutOfRange unless it is finite and above 0 (or 0, where ``zero`` allows that)."""
-    return _positive(dimension, zero).argument(name, value)
+    bound = Quantity(dimension, at_least=0.0) if zero else Quantity(dimension, above=0.0)
+    return bound.argument(name, value)
 
 
 def check_values(name: str, raw: ArrayLike, dimension: str) -> Floats:

@@ -110,12 +110,8 @@ def stiffness_ratio(
 
     1/G* = (2 - nu1)/(4 G1) + (2 - nu2)/(4 G2) and 1/E* = (1 - nu1^2)/E1 + (1 - nu2^2)/E2, with G = E/(2 (1 + nu)); it
     is 2 (1 - nu)/(2 - nu) for equal bodies, or where the counter body is rigid. Moduli [Pa] above 0, inf for a rigid
-    body; ratios of Poisson [1] above -1 and at most 1/2.
-
-    References
-    ----------
-    .. [1] K. L. Johnson, Contact Mechanics (1985), section 7.2, for spheres; the method of dimensionality reduction has
-       it for any shape.
+    body; ratios of Poisson [1] above -1 and at most 1/2. K. L. Johnson, Contact Mechanics (1985), section 7.2, has it
+    for spheres, the method of dimensionality reduction for any shape.
     """
     bodies = ((1.0, poisson), (modulus / counter_modulus, counter_poisson))  # compliances over that of the first body
     normal = sum(compliance * (1.0 - nu * nu) for compliance, nu in bodies)
@@ -129,11 +125,8 @@ def dundurs_beta(
     """Return Dundurs' beta [1], by which shear displaces the surface along the normal, and pressure across it.
 
     beta = [(1 - 2 nu1)/G1 - (1 - 2 nu2)/G2]/(2 [(1 - nu1)/G1 + (1 - nu2)/G2]), arguments as ``stiffness_ratio``. It is
-    0 for equal bodies, and for an incompressible one on a rigid one.
-
-    References
-    ----------
-    .. [1] K. L. Johnson, Contact Mechanics (1985), section 5.4.
+    0 for equal bodies, and for an incompressible one on a rigid one (K. L. Johnson, Contact Mechanics, 1985, section
+    5.4).
     """
     first, second = 1.0 + poisson, modulus / counter_modulus * (1.0 + counter_poisson)  # 1/G over 2/E of the first
     coupled = first * (1.0 - 2.0 * poisson) - second * (1.0 - 2.0 * counter_poisson)

@@ -70,18 +70,6 @@ _EXAMPLES = {
     "W/K": '"3 mW/K"', "S": '"2 kS"',
 }  # fmt: skip
 _SHOWN = {-15: "f", -12: "p", -9: "n", -6: "u", -3: "m", 0: "", 3: "k", 6: "M", 9: "G", 12: "T"}
-_SPELLED = {
-    "m2": "m^2",
-    "J m-2": "J/m^2",
-    "N m-1": "N/m",
-    "Pa m-1": "Pa/m",
-    "m-2": "/m^2",
-    "W K-1": "W/K",
-    "W m-1 K-1": "W/m/K",
-    "m s-1": "m/s",
-}
-"""Units as results have them, in the spelling of a scene."""
-_POWERS = {"m^2": 2, "/m^2": -2}
 _DIGITS, _ERROR_DIGITS = 4, 2
 NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
 _QUANTITY = re.compile(rf"\s*({NUMBER})\s*(.*?)\s*")
@@ -234,30 +222,30 @@ def format_quantity(
     ``unit`` is that of ``value``, as in a scene or in a result; ``to`` is the other end of the range, told where it is
     another number; ``digits`` are those of both. A single quantity is read again by ``quantity``.
     """
-    spelled = _SPELLED.get(unit, unit)
     given = [abs(number) for number in (value, to, error) if number is not None and math.isfinite(number)]
-    largest = max(given, default=0.0)
-    exponent = 0 if spelled == DIMENSIONLESS else _exponent(largest, _POWERS.get(spelled, 1))
-    power = exponent * _POWERS.get(spelled, 1)
+    power, name = _shown(max(given, default=0.0), unit)
     text = _plain(value, power, digits)
     if to is not None and to != value:
         text += f" to {_plain(to, power, digits)}"
     if error is not None and math.isfinite(error):
         text += f" ± {_plain(error, power, _ERROR_DIGITS)}"
-    slash = "/" if spelled.startswith("/") else ""
-    prefixed = f"{slash}{_SHOWN[exponent]}{spelled.removeprefix('/')}"
-    return text if spelled == DIMENSIONLESS else f"{text} {prefixed}"
+    return text if unit == DIMENSIONLESS else f"{text} {name}"
 
 
 def axis_unit(largest: float, unit: str) -> tuple[float, str]:
     """Return the unit of an axis for numbers up to ``largest`` in ``unit``: its size in SI, and its name."""
-    spelled = _SPELLED.get(unit, unit)
-    if spelled == DIMENSIONLESS:
-        return 1.0, ""
-    power = _POWERS.get(spelled, 1)
-    exponent = _exponent(abs(largest), power)
+    power, name = _shown(abs(largest), unit)
+    return 10.0**power, name
+
+
+def _shown(largest: float, unit: str) -> tuple[int, str]:
+    """Return the unit for showing numbers up to ``largest`` in ``unit``: its power of ten in SI, and its name."""
+    if unit == DIMENSIONLESS:
+        return 0, ""
+    spelled, power = _BASES.get(dimension_of(unit), ((unit, 1),))[0]
+    exponent = _exponent(largest, power)
     slash = "/" if spelled.startswith("/") else ""
-    return 10.0 ** (exponent * power), f"{slash}{_SHOWN[exponent]}{spelled.removeprefix('/')}"
+    return exponent * power, f"{slash}{_SHOWN[exponent]}{spelled.removeprefix('/')}"
 
 
 def _exponent(value: float, power: int) -> int:

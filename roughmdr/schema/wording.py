@@ -6,6 +6,7 @@ from collections.abc import Iterable, Iterator
 
 _MIN_SIMILARITY = 0.7  # least ratio of difflib: one or two letters of a word differ
 _LAYOUT = "\n\t"
+_MAX_LENGTH = 160  # characters of a name, or of a text, in a listing
 _NUMBER = re.compile(r"\d[\d.]*(e[+-]?\d+)?")
 
 
@@ -81,6 +82,29 @@ def gathered(lines: Iterable[tuple[str, str]]) -> dict[str, list[str]]:
 def format_table(lines: Iterable[tuple[str, str]]) -> str:
     """Return lines of a name and a text, the names in a column."""
     return "\n".join(f"{name:<12} {text}".rstrip() for name, text in lines)
+
+
+def listing(lines: Iterable[tuple[str, str]]) -> str:
+    """Return the description of an object, lines of a name and a text, for a terminal."""
+    return format_table((_short(name), _short(text)) for name, text in lines)
+
+
+def html_listing(lines: Iterable[tuple[str, str]]) -> str:
+    """Return it as a table for a notebook, without colours of its own, for a light and for a dark page."""
+    import html
+
+    style = "text-align:left;vertical-align:top;background:none;color:inherit"
+    rows = "".join(
+        f'<tr style="background:none"><th style="{style}">{html.escape(_short(name))}</th>'
+        f'<td style="{style}">{html.escape(_short(text))}</td></tr>'
+        for name, text in lines
+    )
+    return f'<table style="color:inherit">{rows}</table>'
+
+
+def _short(text: str) -> str:
+    line = escape_controls(" ".join(text.split()))
+    return line if len(line) <= _MAX_LENGTH else f"{line[: _MAX_LENGTH - 3]}..."
 
 
 def format_seconds(seconds: float) -> str:

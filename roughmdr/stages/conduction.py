@@ -10,8 +10,7 @@ from pydantic import model_validator
 from roughmdr.errors import OutOfRange
 from roughmdr.schema.faults import mismatch
 from roughmdr.schema.quantities import EntryError, Quantity
-from roughmdr.stages.given_scene import Given
-from roughmdr.stages.stage import Contacts, Law, Stage
+from roughmdr.stages.stage import Contacts, Given, Law, Stage
 from roughmdr.variables import CONDUCTANCES
 
 if TYPE_CHECKING:
@@ -84,7 +83,6 @@ class Conduction(Stage):
 
     @classmethod
     def check_without(cls, scene: Given) -> None:
-        """Raise a mismatch where a conductance is asked for."""
         _check_asked(scene, {})
 
     def check(self, scene: Given) -> None:
@@ -92,7 +90,6 @@ class Conduction(Stage):
         _check_asked(scene, self.factors)
 
     def inner_variables(self, names: list[str]) -> list[str]:
-        """Return the variables with the conductance radius in place of conductances."""
         return of_contacts(names)
 
     def law(self, scene: Given, contacts: Contacts) -> Law:
@@ -120,7 +117,6 @@ class Conduction(Stage):
 
     @classmethod
     def cites(cls, table: Mapping[str, Any], variables: list[str]) -> Mapping[str, str]:
-        """Return the papers where a conductance is asked for."""
         return {} if {RADIUS, *CONDUCTANCES}.isdisjoint(variables) else cls.papers
 
 

@@ -12,8 +12,7 @@ from roughmdr.schema.faults import mismatch
 from roughmdr.schema.quantities import EntryError, Quantity
 from roughmdr.schema.units import DIMENSIONLESS
 from roughmdr.shapes import SCENE_SHAPES, SHAPES, Shape
-from roughmdr.stages.given_scene import Given
-from roughmdr.stages.stage import Contacts, Law, Stage
+from roughmdr.stages.stage import Contacts, Given, Law, Stage
 from roughmdr.variables import NOMINAL_VARIABLES
 
 if TYPE_CHECKING:
@@ -105,13 +104,7 @@ class _Nominal(Stage):
         if reason := _against_adhesion(scene.adhesion_model, SHAPES[scene.asperities.shape_name]):
             raise mismatch("adhesion.model", f"does not go with [nominal]: {reason}")
 
-    @classmethod
-    def alone(cls, scene: Given, section: "_Nominal | None") -> str:
-        """Return the key of the section."""
-        return "" if section is None else cls.key
-
     def more_variables(self, names: list[str]) -> list[str]:
-        """Return the variables of the contact of the body."""
         return list(NOMINAL_VARIABLES)
 
     def clear_above(self, scene: Given) -> float:
@@ -123,11 +116,9 @@ class _Nominal(Stage):
         return Contact.of(self.body, scene.effective_modulus, scene.adhesion_model).depth[0]
 
     def coarse(self) -> "_Nominal":
-        """Return the section with a larger error."""
         return self.model_copy(update={"error": _FORESEEN_ERROR})
 
     def expected_seconds(self, nodes: int, steps: int, *, adhering: bool) -> float:
-        """Return about how long the law takes [s]."""
         return _TABLES * nodes + steps * (_STEP + (_NODE * nodes if adhering else 0.0))
 
     def law(self, scene: Given, contacts: Contacts) -> Law:
@@ -144,7 +135,6 @@ class _Nominal(Stage):
         return law
 
     def attributes(self) -> dict[str, str]:
-        """Return the shape of the body."""
         return {self.key: self.shape}
 
 

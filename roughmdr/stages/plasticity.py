@@ -12,8 +12,7 @@ from pydantic_core import PydanticCustomError
 from roughmdr.errors import RoughmdrError
 from roughmdr.schema.faults import mismatch
 from roughmdr.schema.quantities import EntryError, Quantity
-from roughmdr.stages.given_scene import Given
-from roughmdr.stages.stage import Contacts, Law, Stage
+from roughmdr.stages.stage import Contacts, Given, Law, Stage
 
 if TYPE_CHECKING:
     from roughmdr.aggregate.law import LoadSeparation
@@ -111,19 +110,12 @@ class Plasticity(Stage):
             message = f"is {scene.material.poisson:g}; with plasticity.model = {self.model!r} it must be at least 0"
             raise mismatch("material.poisson", message)
 
-    @classmethod
-    def alone(cls, scene: Given, section: "Plasticity | None") -> str:
-        """Return the key of the section."""
-        return "" if section is None else cls.key
-
     def reason_against(self, scene: Given, estimator: str) -> str:
-        """Return why the expected law is impossible where contacts adhere."""
         reason = "the expected law does not know contacts that adhere and yield"
         return reason if estimator == "expected" and scene.work > 0.0 else ""
 
     @classmethod
     def left_out(cls, scene: Given, section: "Plasticity | None") -> Iterator[str]:
-        """Yield the line on plastic flow, and what the models leave out."""
         if section is None:
             yield from (
                 super().left_out(scene, section) if cls._fits(scene) else (f"{cls.about_absent}: contacts are elastic",)
@@ -144,7 +136,6 @@ class Plasticity(Stage):
 
     @classmethod
     def cites(cls, table: Mapping[str, Any], variables: list[str]) -> Mapping[str, str]:
-        """Return the papers on the shape, where a scene has the section."""
         papers = _PAPERS.get(table.get("asperities", {}).get("shape"), _PAPERS["paraboloid"])
         return dict.fromkeys(papers, "yielding") if cls.is_in(table) else {}
 
@@ -163,7 +154,6 @@ class Plasticity(Stage):
         return Body(scene.effective_modulus, strength, scene.work, poisson, shear, squared)
 
     def prepare(self, scene: Given, *, drawn: bool) -> None:
-        """Compile the law of drawn asperities, or the expected one."""
         if drawn:
             from roughmdr.stages.plastic.drawn import prepare
 

@@ -10,8 +10,7 @@ from roughmdr.errors import SceneError
 from roughmdr.schema.faults import mismatch
 from roughmdr.schema.quantities import Quantity
 from roughmdr.stages.conduction import RADIUS, Conduction, of_contacts
-from roughmdr.stages.given_scene import Given
-from roughmdr.stages.stage import Contacts, Drawn, Law, Stage
+from roughmdr.stages.stage import Contacts, Given, Law, Stage
 from roughmdr.variables import REFERENCE_VARIABLES
 
 if TYPE_CHECKING:
@@ -61,7 +60,6 @@ class Reference(Stage):
     """Relative error of its force by the grid."""
 
     def check(self, scene: Given) -> None:
-        """Raise a mismatch with adhesion, and with other paths."""
         if scene.work > 0.0:
             raise mismatch("reference", "does not go with adhesion: boundary elements press without it")
         if scene.path.lateral is not None:
@@ -70,7 +68,6 @@ class Reference(Stage):
             raise mismatch("reference", f"goes with path.{', path.'.join(_CONTROLS)}, not with path.{scene.path.key}")
 
     def reason_against(self, scene: Given, estimator: str) -> str:
-        """Return that the expected law has no surface to press."""
         if estimator != "expected":
             return ""
         return "the reference presses single surfaces, which the expected law does not know"
@@ -89,12 +86,10 @@ class Reference(Stage):
             raise SceneError("reference: a surface that repeats needs patch, patch_x and patch_y, or nominal_area")
 
     def more_variables(self, names: list[str]) -> list[str]:
-        """Return the variables of the reference beside those that are asked for."""
         beside = {*_ALWAYS, *(f"reference_{name}" for name in names)}
         return [name for name in REFERENCE_VARIABLES if name in beside]
 
     def beside(self, scene: Given, separations: int, *, finest: bool) -> tuple[float, float]:
-        """Return about how long [s] and how much memory [byte] the reference of a realisation takes."""
         from roughmdr.elements.refine import LARGEST_GRID, first_points
 
         along = LARGEST_GRID if finest else first_points(scene.asperities.expected_count, self.error)
@@ -119,30 +114,30 @@ class Reference(Stage):
         return _EDGES * of_area * math.sqrt(error) if of_area else error
 
     def plan_lines(self, longest: str, finest: str) -> Iterator[str]:
-        """Yield the time and memory that the reference adds to each run."""
         yield f"boundary elements beside each realisation, their grid right to {self.error:g};"
         yield f"few and small contacts need finer grids: in all up to about {longest}, and {finest} for the grids"
 
     def law(self, scene: Given, contacts: Contacts) -> Law:
         """Return the law with the variables of the reference, of asperities that were drawn."""
-        if contacts.drawn is None:
+        problem, realization = contacts.problem, contacts.realization
+        if problem is None or realization is None:
             return contacts.law
-        drawn = contacts.drawn
 
         def law(path: "Path", names: list[str]) -> "LoadSeparation":
             asked = [name for name in names if name not in REFERENCE_VARIABLES]
-            return self._beside(contacts.law(path, asked).only(asked), scene, path, drawn)
+            return self._beside(contacts.law(path, asked).only(asked), scene, path, problem.ensemble, realization)
 
         return law
 
-    def _beside(self, law: "LoadSeparation", scene: Given, path: "Path", drawn: Drawn) -> "LoadSeparation":
+    def _beside(
+        self, law: "LoadSeparation", scene: Given, path: "Path", ensemble: "Ensemble", realization: int
+    ) -> "LoadSeparation":
         """Return the law of a realisation with the variables of its reference; NaN where that has no equilibrium."""
         from roughmdr.elements.refine import errors, solve_to_error, solve_under_loads
         from roughmdr.elements.surface import surface_of
         from roughmdr.loading.machine import MachinePath
 
-        ensemble = drawn.ensemble
-        height_map = scene.asperities.height_map(scene.seed, drawn.realization)
+        height_map = scene.asperities.height_map(scene.seed, realization)
         loaded = isinstance(path, MachinePath)
         separation = law.variables["separation"] if loaded else path.values
         highest = float(ensemble.height.max())
@@ -221,22 +216,18 @@ class Reference(Stage):
         )
 
 
-def _remarks(error: float, asked: float, shape: tuple[int, int], lost: int) -> list[str]:
-    """Return the warnings that boundary elements miss the error asked for, or have no equilibrium."""
-    lines = []
+def _remarks(error: float, asked: float, shape: tuple[int, int], lost: int) -> Iterator[str]:
+    """Yield warnings that boundary elements miss the error asked for, or have no equilibrium."""
     nx, ny = shape
     if math.isinf(error):
-        lines.append(f"reference: {nx} x {ny} points miss the contacts; none of its forces is right")
+        yield f"reference: {nx} x {ny} points miss the contacts; none of its forces is right"
     elif error > asked:
-        lines.append(
+        yield (
             f"reference: {nx} x {ny} points give the force to {error:.2g} only; {asked:g} was asked for, and is out of "
             "reach of finer grids in about a minute: contacts of few points bear the force"
         )
     if lost:
-        lines.append(
-            f"reference: no equilibrium at {lost} steps, where the flat is below the mean height of the surface"
-        )
-    return lines
+        yield f"reference: no equilibrium at {lost} steps, where the flat is below the mean height of the surface"
 
 
 def _percent(share: float, sign: str = "") -> str:

@@ -6,27 +6,60 @@ section that changes nothing. None of them imports physics before it is needed: 
 
 import math
 from collections.abc import Callable, Iterator, Mapping
-from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Self
+from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Protocol, Self, TypeVar
 
 from roughmdr.schema.section import Section
-from roughmdr.stages.given_scene import Given
 
 if TYPE_CHECKING:
     from roughmdr.aggregate.law import LoadSeparation
     from roughmdr.aggregate.problem import Problem
-    from roughmdr.ensemble import Ensemble
+    from roughmdr.ensemble import Ensemble, Source
+    from roughmdr.kernels.adhesion import Adhesion
     from roughmdr.loading.lateral import Path
     from roughmdr.numerics.arguments import Floats
 
+AnySection = TypeVar("AnySection", bound=Section)
 Law = Callable[["Path", list[str]], "LoadSeparation"]
 """A path and the variables asked for -> the law along it, which may have other variables too."""
 
 
-class Drawn(NamedTuple):
-    """The asperities of one realisation."""
+class Given(Protocol):
+    """The parts of a scene without a sweep that stages use, as ``scene.content`` declares them: it imports stages."""
 
-    ensemble: "Ensemble"
-    realization: int
+    @property
+    def seed(self) -> int: ...
+    @property
+    def material(self) -> Any: ...
+    @property
+    def path(self) -> Any: ...
+    @property
+    def output(self) -> Any: ...
+    @property
+    def accuracy(self) -> Any: ...
+    @property
+    def interaction(self) -> Any: ...
+    @property
+    def asperities(self) -> "Source": ...
+    @property
+    def effective_modulus(self) -> float: ...
+    @property
+    def bodies(self) -> tuple[float, ...] | None: ...
+    @property
+    def work(self) -> float: ...
+    @property
+    def adhesion_model(self) -> "Adhesion": ...
+    @property
+    def nominal_area(self) -> float | None: ...
+    @property
+    def repeats(self) -> bool: ...
+    @property
+    def estimators(self) -> tuple[str, ...]: ...
+    @property
+    def unlike(self) -> str: ...
+    @property
+    def stages(self) -> "tuple[Stage, ...]": ...
+    def reason_against(self, estimator: str) -> str: ...
+    def stage(self, kind: type[AnySection]) -> AnySection | None: ...
 
 
 class Contacts(NamedTuple):
@@ -38,10 +71,10 @@ class Contacts(NamedTuple):
     """Return the height of the highest summit [m]; -inf where there is none."""
     nominal_area: float | None
     """[m2]"""
-    drawn: Drawn | None = None
-    """The asperities themselves; None for an expected law, and where ``plan`` foresees the law from a part of them."""
     problem: "Problem | None" = None
-    """The asperities, or that part of them, with their material; None for an expected law."""
+    """The asperities, or a part of them, with their material; None for an expected law."""
+    realization: int | None = None
+    """Number of the realisation; None for an expected law, and where ``plan`` foresees the law from that part."""
 
 
 class Stage(Section):
@@ -105,9 +138,9 @@ class Stage(Section):
     def alone(cls, scene: Given, section: Any) -> str:
         """Return the key at fault if two sections need the plain elastic law under a flat; empty if this does not.
 
-        ``section`` is None where the scene has none.
+        ``section`` is None where the scene has none. A section that is ``unlike`` needs it, unless it says otherwise.
         """
-        return ""
+        return cls.key if section is not None and cls.unlike else ""
 
     def reason_against(self, scene: Given, estimator: str) -> str:
         """Return why the estimator "stratified" or "expected" is impossible; empty where it is possible."""

@@ -9,8 +9,7 @@ from roughmdr.schema.faults import mismatch
 from roughmdr.schema.material import dundurs_beta, stiffness_ratio
 from roughmdr.schema.quantities import Quantity
 from roughmdr.stages.conduction import RADIUS
-from roughmdr.stages.given_scene import Given
-from roughmdr.stages.stage import Contacts, Law, Stage
+from roughmdr.stages.stage import Contacts, Given, Law, Stage
 from roughmdr.variables import DEFAULT_LATERAL_VARIABLES, TANGENTIAL_VARIABLES
 
 if TYPE_CHECKING:
@@ -54,23 +53,20 @@ class Tangential(Stage):
 
     @classmethod
     def usual_variables(cls, table: Mapping[str, Any]) -> list[str] | None:
-        """Return the variables of a lateral path."""
         path = table.get("path")
         lateral = path.get("lateral") if isinstance(path, dict) else getattr(path, "lateral", None)
         return None if lateral is None else list(DEFAULT_LATERAL_VARIABLES)
 
     @classmethod
     def check_without(cls, scene: Given) -> None:
-        """Raise a mismatch where lateral forces are asked for."""
         if subject := _asked(scene):
             key = "tangential.friction" if scene.path.lateral is not None else "tangential"
             raise mismatch(key, f"is missing; {subject} needs it")
 
     def check(self, scene: Given) -> None:
         """Raise a mismatch where lateral forces are asked for and another section forbids them, or G*/E* is unknown."""
-        lateral, bodies = scene.path.lateral is not None, _bodies_of(scene)
-        subject = _asked(scene)
-        if self.stiffness_ratio is not None and bodies is not None:
+        lateral, subject = scene.path.lateral is not None, _asked(scene)
+        if self.stiffness_ratio is not None and scene.bodies is not None:
             raise mismatch("tangential.stiffness_ratio", "follows from the modulus and poisson of [material] already")
         if not subject:
             return
@@ -91,12 +87,10 @@ class Tangential(Stage):
 
     @classmethod
     def alone(cls, scene: Given, section: "Tangential | None") -> str:
-        """Return the key of the lateral path."""
         return "" if scene.path.lateral is None else "path.lateral"
 
     @classmethod
     def left_out(cls, scene: Given, section: "Tangential | None") -> Iterator[str]:
-        """Yield lateral forces, or slip, where the scene does not need them."""
         yield from super().left_out(scene, section)
         if section is not None and scene.path.lateral is None:
             yield "slip: the scene has no path.lateral"
@@ -105,7 +99,7 @@ class Tangential(Stage):
         """Yield effects that the theory neglects in lateral forces that are asked for, or are on the path."""
         if TANGENTIAL_VARIABLES.keys().isdisjoint(scene.output.variables):
             return
-        bodies = _bodies_of(scene)
+        bodies = scene.bodies
         if bodies is None:
             yield "shear is taken not to move the surface along the normal, as where Dundurs' beta is 0"
         elif beta := dundurs_beta(*bodies):
@@ -115,8 +109,7 @@ class Tangential(Stage):
 
     def ratio(self, scene: Given) -> float | None:
         """Return G*/E* [1]; None where it is not known."""
-        bodies = _bodies_of(scene)
-        return self.stiffness_ratio if bodies is None else stiffness_ratio(*bodies)
+        return self.stiffness_ratio if scene.bodies is None else stiffness_ratio(*scene.bodies)
 
     def constants(self, scene: Given) -> "SlipConstants":
         """Return the constants of the contacts, for a scene with a known G*/E*."""
@@ -127,7 +120,6 @@ class Tangential(Stage):
         return SlipConstants(scene.effective_modulus, ratio, math.nan if self.friction is None else self.friction)
 
     def inner_variables(self, names: list[str]) -> list[str]:
-        """Return the variables of the normal law that lateral forces need."""
         from roughmdr.stages.slip import normal_variables
 
         return normal_variables(names)
@@ -180,7 +172,6 @@ class Tangential(Stage):
 
     @classmethod
     def cites(cls, table: Mapping[str, Any], variables: list[str]) -> Mapping[str, str]:
-        """Return the papers on partial slip, or that on the stiffness of contacts that stick."""
         if "lateral" in table.get("path", {}):
             return cls.papers
         return {"Mindlin1949": cls.papers["Mindlin1949"]} if _STICKING in variables else {}
@@ -193,17 +184,6 @@ def _asked(scene: Given) -> str:
     if not lateral and (wrong := [name for name in asked if name != _STICKING]):
         raise mismatch("output.variables", f"{wrong[0]} needs a lateral path: path.lateral")
     return "path.lateral" if lateral else f"{_STICKING} among output.variables" if asked else ""
-
-
-def _bodies_of(scene: Given) -> tuple[float, ...] | None:
-    """Return modulus [Pa] and Poisson's ratio of both bodies, or of the first where the counter body is rigid.
-
-    None where only E* is known.
-    """
-    material, counter = scene.material, scene.counter
-    if material.modulus is None or material.poisson is None:
-        return None
-    return (material.modulus, material.poisson, *(() if counter is None else (counter.modulus, counter.poisson)))
 
 
 def _separation(normal: Law, path: "LateralPath") -> float:

@@ -12,8 +12,7 @@ from roughmdr.schema.faults import mismatch
 from roughmdr.schema.quantities import EntryError, Quantity
 from roughmdr.schema.section import Section
 from roughmdr.schema.units import format_quantity
-from roughmdr.stages.given_scene import Given
-from roughmdr.stages.stage import Contacts, Law, Stage
+from roughmdr.stages.stage import Contacts, Given, Law, Stage
 from roughmdr.variables import DEFAULT_VARIABLES, TIME
 
 if TYPE_CHECKING:
@@ -74,7 +73,6 @@ class Viscoelastic(Stage):
 
     @classmethod
     def usual_variables(cls, table: Mapping[str, Any]) -> list[str] | None:
-        """Return those usual variables that a viscoelastic law has."""
         if table.get(cls.key) is None:
             return None
         return [name for name in DEFAULT_VARIABLES if name not in _NOT_COMPUTED]
@@ -93,11 +91,6 @@ class Viscoelastic(Stage):
         if unknown := [name for name in scene.output.variables if name in _NOT_COMPUTED]:
             raise mismatch("output.variables", f"{', '.join(unknown)} cannot be computed with [viscoelastic]")
 
-    @classmethod
-    def alone(cls, scene: Given, section: "Viscoelastic | None") -> str:
-        """Return the key of the section."""
-        return "" if section is None else cls.key
-
     def check_path(self, values: "Floats") -> None:
         """Raise SceneError unless separations [m] fall, stay at the lowest and rise, in a finite time."""
         _check_order(values)
@@ -110,12 +103,10 @@ class Viscoelastic(Stage):
                 raise _fault("viscoelastic", "has speeds by which the path takes longer than a float holds")
 
     def coordinates(self, values: "Floats") -> "dict[str, Floats]":
-        """Return the time of each step [s] since the first."""
         return {TIME.name: self.motion.time(values)}
 
     @classmethod
     def left_out(cls, scene: Given, section: "Viscoelastic | None") -> Iterator[str]:
-        """Yield the line on relaxation, for contacts without adhesion."""
         if section is None and scene.work == 0.0:
             if not scene.unlike:
                 yield "hysteresis: without adhesion a contact has no memory"

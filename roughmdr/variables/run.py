@@ -21,20 +21,12 @@ def _pairwise(scene: Any) -> bool:
     return bool(scene.needs_positions)
 
 
-def _referred(scene: Any) -> bool:
-    return any(stage.on_grid for stage in scene.stages)
-
-
 def _adhering(scene: Any) -> bool:
     return bool(scene.needs_positions and scene.adhesion_model.work > 0.0)
 
 
-def _conducting(scene: Any) -> bool:
-    return not {"conductance_radius", *CONDUCTANCES}.isdisjoint(scene.output.variables)
-
-
-def _sticking(scene: Any) -> bool:
-    return "tangential_stiffness" in scene.output.variables and scene.path.lateral is None
+def _referred(scene: Any) -> bool:
+    return any(stage.on_grid for stage in scene.stages)
 
 
 def _plastic(scene: Any) -> bool:
@@ -52,10 +44,7 @@ def _diagnostics(*rows: Diagnostic) -> dict[str, Diagnostic]:
 YIELDING = {
     "yielded_contact_fraction": ("1", "share of the contacts with a mean pressure above the hardness, where closest"),
     "yielded_load_fraction": ("1", "share of the load that these contacts bear, at closest approach"),
-    "elastic_pressure": (
-        "Pa",
-        "pressure to which these bear at most 2 % of the load; none where they never bear more",
-    ),
+    "elastic_pressure": ("Pa", "pressure to which these bear at most 2 % of the load; none where they never bear more"),
     "elastic_separation": ("m", "separation at that pressure"),
     "plasticity_index": ("1", "plasticity index of Greenwood and Williamson: (E*/hardness) sqrt(sigma/R)"),
 }
@@ -104,13 +93,13 @@ RUN_DIAGNOSTICS = _diagnostics(
         "conductance_error",
         "1",
         "estimated relative error of the conductance at given separation by the assumptions of the model, at most",
-        in_result=_conducting,
+        in_result=lambda scene: not {"conductance_radius", *CONDUCTANCES}.isdisjoint(scene.output.variables),
     ),
     Diagnostic(
         "tangential_error",
         "1",
         "estimated relative error of the tangential stiffness of contacts that stick, at given separation, at most",
-        in_result=_sticking,
+        in_result=lambda scene: "tangential_stiffness" in scene.output.variables and scene.path.lateral is None,
     ),
     Diagnostic(
         "overlap_fraction",
@@ -119,10 +108,7 @@ RUN_DIAGNOSTICS = _diagnostics(
         "of the force that they carry; none for hills",
     ),
     Diagnostic(
-        "overlap_count",
-        "1",
-        "number of contacts that overlap a neighbour's, at closest approach",
-        in_result=_pairwise,
+        "overlap_count", "1", "number of contacts that overlap a neighbour's, at closest approach", in_result=_pairwise
     ),
     Diagnostic(
         "marked_steps",
@@ -142,17 +128,10 @@ RUN_DIAGNOSTICS = _diagnostics(
         "reference_points", "1", "points of the grid of the reference by boundary elements", in_result=_referred
     ),
     Diagnostic(
-        "avalanche_count",
-        "1",
-        "number of separations at which contacts are made or lost in jumps",
-        in_result=_adhering,
+        "avalanche_count", "1", "number of separations at which contacts are made or lost in jumps", in_result=_adhering
     ),
     Diagnostic(
-        "avalanche_size_max",
-        "1",
-        "largest number of jumps at one separation",
-        merge="maximum",
-        in_result=_adhering,
+        "avalanche_size_max", "1", "largest number of jumps at one separation", merge="maximum", in_result=_adhering
     ),
     Diagnostic("largest_contact_fraction", "1", "largest contact area over the nominal area"),
     Diagnostic(
@@ -230,11 +209,7 @@ SAMPLE = ("effective_contacts", "sampling_error", "area_sampling_error")
 """Diagnostics that tell how far one sample of a surface stands for others."""
 
 PULL_OFF_NUMBERS = declare(
-    (
-        "pull_off_force",
-        "N",
-        "largest tension of the unloading, between its steps; none where it ends in contact",
-    ),
+    ("pull_off_force", "N", "largest tension of the unloading, between its steps; none where it ends in contact"),
     ("pull_off_separation", "m", "separation at the largest tension of the unloading"),
     ("pull_off_contacts", "1", "number of contacts that carry the largest tension of the unloading"),
     ("pull_off_contact_area", "m2", "contact area at the largest tension of the unloading"),

@@ -109,18 +109,12 @@ def linear_response(half: Half, state: State, force: Floats, damping: float = 0.
     It becomes negative where a stable branch ends.
     """
     loaded = np.flatnonzero(state.slope)
-    slope, x = state.slope[loaded], force.copy()
-    stable = True
-    if loaded.size:
-        matrix = -half.matrix[np.ix_(loaded, loaded)] * slope
-        matrix[np.diag_indices(loaded.size)] += 1.0 + damping
-        among = force[loaded]
-        stable = bool(_eliminate(matrix, among) > 0.0)
-        x += (half.matrix[:, loaded] * (slope * among)).sum(axis=1)
-        x /= 1.0 + damping
-        x[loaded] = among
-    else:
-        x /= 1.0 + damping
+    slope, among = state.slope[loaded], force[loaded]
+    matrix = -half.matrix[np.ix_(loaded, loaded)] * slope
+    matrix[np.diag_indices(loaded.size)] += 1.0 + damping
+    stable = bool(_eliminate(matrix, among) > 0.0)
+    x = (force + (half.matrix[:, loaded] * (slope * among)).sum(axis=1)) / (1.0 + damping)
+    x[loaded] = among
     return x, stable
 
 

@@ -1,7 +1,7 @@
 """The law of a curved body on a flat with a rough layer between them, along the path of the body."""
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 
 import numpy as np
 
@@ -56,7 +56,7 @@ def compute(layer: Layer, shape: Shape, path: LoadingPath, *, error: float, vari
         model_error=error_of_layer._replace(named=error_of_layer.named | trusted),
         pull_off=pull_off_of(body, places, separation, error),
         extremes=_extremes(local.extremes, shape, own["nominal_contact_radius"]),
-        warnings=(*local.warnings, *_remarks(solution.error, error), *_few(own["contact_count"])),
+        warnings=(*local.warnings, *_remarks(solution.error, error, own["contact_count"])),
     )
 
 
@@ -110,22 +110,16 @@ def _extremes(of_asperities: ValidityLimits, shape: Shape, radius: Floats) -> Va
     return of_asperities._replace(slope=slope, extent=extent)
 
 
-def _few(contacts: Floats) -> list[str]:
-    """Return the warning that contacts are too few for a law of their mean."""
-    most = float(contacts.max(initial=0.0))
-    if not 0.0 < most < _FEW:
-        return []
-    return [
-        f"no more than {most:.2g} asperities in contact on average: a body on so few meets each of them, and its force "
-        f"differs from this mean from place to place (warned of below {_FEW})"
-    ]
-
-
-def _remarks(error: float, asked: float) -> list[str]:
-    """Return the warning that the rings do not reach the error asked for."""
-    if error <= asked:
-        return []
-    return [f"the force of the curved body changes by {error:.2g} of its largest with finer rings; {asked:g} was asked"]
+def _remarks(error: float, asked: float, contacts: Floats) -> Iterator[str]:
+    """Yield warnings of rings that do not reach the error asked for, and of too few contacts for their mean."""
+    if error > asked:
+        change = f"{error:.2g} of its largest with finer rings; {asked:g} was asked"
+        yield f"the force of the curved body changes by {change}"
+    if 0.0 < (most := float(contacts.max(initial=0.0))) < _FEW:
+        yield (
+            f"no more than {most:.2g} asperities in contact on average: a body on so few meets each of them, and its "
+            f"force differs from this mean from place to place (warned of below {_FEW})"
+        )
 
 
 def pull_off_of(body: Body, places: list[Place], separation: Floats, error: float) -> PullOff:

@@ -19,7 +19,7 @@ from roughmdr.expected.node import QuadratureNode
 from roughmdr.expected.table import AdaptiveTable
 from roughmdr.kernels.elementwise import apply
 from roughmdr.numerics.arguments import Floats
-from roughmdr.numerics.chebyshev import evaluate_series, find_piece
+from roughmdr.numerics.chebyshev import find_piece, series_at
 from roughmdr.numerics.jit import njit
 
 ROWS = (FORCE, STIFFNESS, AREA, COUNT, RADIUS)
@@ -97,14 +97,12 @@ class LocalLaw(NamedTuple):
     def pressure(self, s: Floats, memory: Floats) -> tuple[Floats, Floats]:
         """Return p [Pa] and dp/ds [Pa/m] at separations s [m], reached monotonically after ``memory``."""
         within = np.maximum(s, self.closest)
-        pressure, slope = self._tabulated(within) if self.table is not None else self._remembered(within, memory)
+        if self.table is None:
+            pressure, slope = self._remembered(within, memory)
+        else:
+            pressure, stiffness = _read(self.table, within, _OF_SLOPE)
+            slope = -stiffness
         return pressure, np.where(s < self.closest, 0.0, slope)
-
-    def _tabulated(self, s: Floats) -> tuple[Floats, Floats]:
-        """Return p and dp/ds without adhesion."""
-        assert self.table is not None
-        pressure, stiffness = _read(self.table, s, _OF_SLOPE)
-        return pressure, -stiffness
 
     def _remembered(self, s: Floats, memory: Floats) -> tuple[Floats, Floats]:
         """Return p and dp/ds with adhesion, contacts that are made or lost as s changes included."""
@@ -114,8 +112,9 @@ class LocalLaw(NamedTuple):
         for node, edge, before in zip(self.nodes, lowest, memory, strict=True):
             touching, detaching = _end_forces(node)
             gained = np.where(edge < before, touching, np.where(edge > before, detaching, 0.0))
-            made = np.where(gained != 0.0, gained * _density(node.heights, edge - node.heights.origin), 0.0)
-            slope -= self.density * node.fraction * made
+            y = edge - node.heights.origin
+            density = np.where(y < node.heights.low[0], 0.0, _read(node.heights, y, 1)[0])
+            slope -= self.density * node.fraction * np.where(gained != 0.0, gained * density, 0.0)
         return pressure, slope
 
     def totals(self, s: Floats, lowest: Floats) -> dict[int, Floats]:
@@ -149,18 +148,16 @@ def _integrals(node: QuadratureNode, s: Floats, lowest: Floats, rows: int) -> Fl
 
 
 @njit
-def _read(table: AdaptiveTable, s: Floats, rows: int) -> Floats:
-    """Return the first ``rows`` of a table at separations s [m] above its lower end; 0 above its upper: [row, ring]."""
+def _read(table: AdaptiveTable | HeightTable, s: Floats, rows: int) -> Floats:
+    """Return the first ``rows`` of a table at each s [m] above its lower end; 0 above its upper: [row, ring]."""
     found = np.zeros((rows, s.size))
-    u, value, before, earlier = np.empty((4, 1))
     for i in range(s.size):
         if s[i] < table.high[-1]:
             piece = find_piece(table.high, s[i])
             low, high = table.low[piece], table.high[piece]
-            u[0] = (2.0 * s[i] - low - high) / (high - low)
+            u = (2.0 * s[i] - low - high) / (high - low)
             for row in range(rows):
-                evaluate_series(table.coefficients[piece, row], u, value, before, earlier)
-                found[row, i] = value[0]
+                found[row, i] = series_at(table.coefficients[piece, row], u)
     return found
 
 
@@ -170,18 +167,3 @@ def _end_forces(node: QuadratureNode) -> tuple[float, float]:
     state = apply(kernels.state, np.array([1.0, 0.0]), params)
     touching, detaching = node.contact.force * apply(kernels.force, state, params)
     return float(touching), float(detaching)
-
-
-@njit
-def _density(heights: HeightTable, y: Floats) -> Floats:
-    """Return the density of the heights [1/m] at each y [m]; 0 outside their table."""
-    found = np.zeros(y.size)
-    u, value, before, earlier = np.empty((4, 1))
-    for i in range(y.size):
-        if heights.low[0] <= y[i] < heights.high[-1]:
-            piece = find_piece(heights.high, y[i])
-            low, high = heights.low[piece], heights.high[piece]
-            u[0] = (2.0 * y[i] - low - high) / (high - low)
-            evaluate_series(heights.coefficients[piece, 0], u, value, before, earlier)
-            found[i] = value[0]
-    return found

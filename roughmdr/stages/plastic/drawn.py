@@ -32,11 +32,13 @@ class DrawnAsperities:
     """Without a rule over the radii there is nothing to refine."""
 
     def __init__(self, problem: Problem, model: str, body: Body) -> None:
-        """Take the ensemble of a problem, and the bodies."""
         self._problem, self._model, self._body = problem, model, body
         self._kernels, self._height = kernels_of(model, body, problem.ensemble.shape), problem.ensemble.height
-        self.depth, self.nominal_area = problem.depth if self._height.size else 0.0, problem.ensemble.nominal_area
-        self.first_touch = problem.clear if self._height.size else 0.0
+        self.nominal_area, none = problem.ensemble.nominal_area, self._height.size == 0
+        self.depth = 0.0 if none else problem.depth
+        """A usual indentation [m]; 0 without asperities."""
+        self.first_touch = 0.0 if none else problem.clear
+        """Separation [m] of the first touch; a little above it where contacts adhere."""
 
     @cached_property
     def _rows(self) -> Floats:

@@ -1,6 +1,6 @@
 """The law of asperities that yield along a path: of the flat, or of the machine that moves it."""
 
-from typing import Protocol
+from typing import TYPE_CHECKING, Union
 
 import numpy as np
 
@@ -15,38 +15,14 @@ from roughmdr.loading.steady_passage import ForceAndStiffness, separations_of
 from roughmdr.numerics.arguments import Floats
 from roughmdr.stages.plastic.drawn import DrawnAsperities
 
+if TYPE_CHECKING:
+    from roughmdr.stages.plastic.mean import MeanAsperities
+
+Asperities = Union[DrawnAsperities, "MeanAsperities"]
+"""Asperities that yield: drawn ones, or the mean over them."""
 _ERROR = 1e-12  # error of a load under a machine, over it, and of a separation over a usual indentation
 _FIRST, _DEEPEST = 2.0**-6, 2.0**60  # first and last step to deeper contact, over a usual indentation
 _ROUNDINGS = 2.0**-50  # relative rounding of a separation at which contacts part
-
-
-class Asperities(Protocol):
-    """Asperities that yield: drawn ones, or the mean over them."""
-
-    @property
-    def first_touch(self) -> float:
-        """Separation [m] of the first touch; a little above it where contacts adhere."""
-
-    @property
-    def depth(self) -> float:
-        """A usual indentation [m]; 0 without asperities."""
-
-    @property
-    def nominal_area(self) -> float | None:
-        """[m2]"""
-
-    @property
-    def order(self) -> int:
-        """Nodes over the radii by which totals are found; ``law`` takes more where they are too few."""
-
-    def totals(self, separation: Floats, rows: set[int]) -> Floats:
-        """Return totals [row, step] along separations [m]; OutOfRange where one is not representable."""
-
-    def parting(self, lowest: float) -> float:
-        """Return the separation [m] at which the last contact is lost after the flat has been at ``lowest`` [m]."""
-
-    def law(self, path: LoadingPath, names: list[str]) -> LoadSeparation:
-        """Return the law along a path of the flat; OutOfRange as ``totals``."""
 
 
 def plastic_law(asperities: Asperities, path: LoadingPath | MachinePath, names: list[str]) -> LoadSeparation:

@@ -179,11 +179,11 @@ class MeanAsperities:
     """The mean over asperities of a source that yield by a model, without adhesion."""
 
     def __init__(self, source: Source, model: str, body: Body) -> None:
-        """Take the source and the bodies."""
         self._source, self._model, self._body = source, model, body
         self._kernels = kernels_of(model, body, source.shape_name)
         self.nominal_area = source.nominal_area
-        self.order, self._nodes = 1, cache(self._nodes_by)  # a machine asks for them many times
+        self.order = 1  # nodes over the radii by which totals are found; ``law`` takes more where they are too few
+        self._nodes = cache(self._nodes_by)  # a machine asks for them many times
 
     @cached_property
     def first_touch(self) -> float:

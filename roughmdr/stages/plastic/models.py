@@ -1,7 +1,6 @@
 """Models of contacts that yield, and how much they differ."""
 
 import math
-from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -22,6 +21,7 @@ _USUAL_POISSON = 0.3
 
 kernel = PlasticKernels("kernel")
 """Stands for the kernels of a model in ``_add_up``."""
+_compiled = once(specialise)
 _LIGHTEST = 0.1
 """Force over the largest from which models are compared at equal force: of less the first few contacts may tell."""
 _LOADS = 64  # forces at which they are
@@ -48,7 +48,7 @@ def compare(model: str, body: Body, shape: str, height: Floats, parameter: Float
     def totals(separation: Floats) -> Floats:
         found = np.zeros((len(compared), STIFFNESS + 1, separation.size))
         for kernels, total in zip(compared, found, strict=True):
-            _compiled(kernels)(height, parameter, separation, dry, total)
+            _compiled(_add_up, kernels)(height, parameter, separation, dry, total)
         return found
 
     along = totals(separation)
@@ -99,9 +99,3 @@ def _add_up(height: Floats, parameter: Floats, separation: Floats, body: Body, t
                 total[RADIUS_SUM, step] += contact.radius
                 total[AREA, step] += math.pi * contact.radius * contact.radius
                 total[STIFFNESS, step] += contact.stiffness
-
-
-@once
-def _compiled(kernels: PlasticKernels) -> Callable[..., None]:
-    """Return the loop compiled for some kernels."""
-    return specialise(_add_up, kernels)

@@ -5,7 +5,6 @@ adhesion whether it is joined to the flat. So each asperity is followed step by 
 """
 
 import math
-from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
@@ -43,6 +42,7 @@ _KERNEL_ERROR = 1e-13  # error of a force over 2 E* a times the deepest indentat
 _ROUNDING = 2.0**-52  # relative error of an indentation, over height and separation
 kernel = PlasticKernels("kernel")
 """Stands for the kernels of a model in ``_loop``."""
+_compiled = once(specialise)
 
 
 class Sum(NamedTuple):
@@ -140,18 +140,12 @@ def _rows_loop(rows: Floats, body: Body) -> None:
         kernel.prepare(asperity, body)
 
 
-@once
-def _compiled(kernels: PlasticKernels) -> tuple[Callable[..., None], ...]:
-    """Return the loops compiled for some kernels."""
-    return specialise(_loop, kernels), specialise(_parting_loop, kernels), specialise(_rows_loop, kernels)
-
-
 def rows_of(kernels: PlasticKernels, parameter: Floats, body: Body) -> Floats:
     """Return the numbers of each asperity, [asperity, row], from its ``kernels.parameter``."""
     rows = np.zeros((parameter.size, ROWS))
     rows[:, OWN_RADIUS] = parameter
     with np.errstate(all="ignore"):  # numbers that no float holds are refused with the totals
-        _compiled(kernels)[2](rows, body)
+        _compiled(_rows_loop, kernels)(rows, body)
     return rows
 
 
@@ -164,7 +158,7 @@ def add_up(
     asked[RADIUS] |= asked[CONDUCTANCE]
     found = np.zeros((TOTAL_ROWS, separation.size))
     compensation, closest = np.zeros_like(found), np.zeros((2, height.size))
-    _compiled(kernels)[0](height, rows, separation, body, asked, found, compensation, closest)
+    _compiled(_loop, kernels)(height, rows, separation, body, asked, found, compensation, closest)
     found += compensation
     if asked[CONDUCTANCE]:
         found[CONDUCTANCE] = found[RADIUS]
@@ -179,5 +173,5 @@ def add_up(
 def partings(kernels: PlasticKernels, height: Floats, rows: Floats, lowest: float, body: Body) -> Floats:
     """Return the separation [m] at which each contact is lost after the flat has been at ``lowest`` [m]."""
     separation = np.empty_like(height)
-    _compiled(kernels)[1](height, rows, lowest, body, separation)
+    _compiled(_parting_loop, kernels)(height, rows, lowest, body, separation)
     return separation

@@ -41,35 +41,14 @@ def viscoelastic_law(
     clear: float,
     nominal_area: float | None,
 ) -> LoadSeparation:
-    """Return the law along separations [m] that fall, and then rise.
+    """Return the law along separations [m] that fall, and then rise; OutOfRange where the elastic law raises it.
 
-    Parameters
-    ----------
-    elastic : callable
-        The law with the instantaneous modulus.
-    separation : numpy.ndarray, shape (n,)
-        [m]
-    names : list of str
-        Of force, pressure, contact_area, contact_fraction, contact_count, contact_radius_sum, model_error_curve.
-    body : Viscoelasticity
-        Its relaxation, and the motion of the flat.
-    clear : float
-        Separation [m] at and above which nothing touches.
-    nominal_area : float or None
-        [m2]; None only where no variable needs it.
-
-    Returns
-    -------
-    LoadSeparation
-        Its model error is that of the elastic law of the contacts.
-
-    Raises
-    ------
-    OutOfRange
-        As the elastic law does.
+    ``elastic`` is the law with the instantaneous modulus, ``names`` are of force, pressure, contact_area,
+    contact_fraction, contact_count, contact_radius_sum and model_error_curve. At ``clear`` [m] and above nothing
+    touches. ``nominal_area`` [m2] is None only where no variable needs it. The model error is that of the elastic law.
     """
-    contacts = body.motion.contacts(separation, body.relaxation, clear)
-    law = elastic(contacts.separation, list(dict.fromkeys(["force", *(name for name in names if name != "pressure")])))
+    loading, age = body.motion.contacts(separation, body.relaxation, clear)
+    law = elastic(loading, list(dict.fromkeys(["force", *(name for name in names if name != "pressure")])))
     force, visits, error = law.variables["force"], law.visits, law.numerical_error
 
     if force.any():
@@ -82,9 +61,9 @@ def viscoelastic_law(
 
         relaxation = body.relaxation
         lengths = body.motion.speed * relaxation.times
-        weights = relaxation.shares[:, None] * np.exp(-contacts.age / relaxation.times[:, None])
+        weights = relaxation.shares[:, None] * np.exp(-age / relaxation.times[:, None])
         fading = Fading(lengths, weights, relaxation.long_term, force)
-        force, off = remembered_force(force_at, fading, contacts.separation, clear)
+        force, off = remembered_force(force_at, fading, loading, clear)
         error = off / float(np.abs(force).max())
     variables = {"force": force}
     if "pressure" in names:

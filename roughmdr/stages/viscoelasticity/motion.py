@@ -9,15 +9,6 @@ from roughmdr.numerics.arguments import Floats
 from roughmdr.stages.viscoelasticity.relaxation import Relaxation
 
 
-class Contacts(NamedTuple):
-    """Contacts of a viscoelastic body: they equal those of loading at an earlier time."""
-
-    separation: Floats
-    """Separation of the flat at that time [m]."""
-    age: Floats
-    """Time since then [s]."""
-
-
 class FlatMotion(NamedTuple):
     """A flat that comes from infinity, may dwell at its lowest separation, and retracts."""
 
@@ -37,15 +28,12 @@ class FlatMotion(NamedTuple):
         fallen = (separation[0] - separation[: turn + 1]) / self.speed
         return np.concatenate([fallen, fallen[-1] + sum(self._since_turn(separation[turn + 1 :], separation[turn]))])
 
-    def contacts(self, separation: Floats, relaxation: Relaxation, clear: float) -> Contacts:
-        """Return the contacts at each step of separations [m] that fall, and then rise.
+    def contacts(self, separation: Floats, relaxation: Relaxation, clear: float) -> tuple[Floats, Floats]:
+        """Return the separation [m] of loading with the contacts of each step, and the time [s] since then.
 
-        At ``clear`` [m] and above nothing touches. While the flat rises they are those of the time t1 of loading with
-        ∫_t1^t phi(t - s) h'(s) ds = 0 [1]_: one time for all shapes and heights.
-
-        References
-        ----------
-        .. [1] T. C. T. Ting, J. Appl. Mech. 33 (1966) 845.
+        The separations [m] of the steps fall, and then rise; at ``clear`` [m] and above nothing touches. While the flat
+        rises contacts are those of the time t1 of loading with ∫_t1^t phi(t - s) h'(s) ds = 0: one time for all shapes
+        and heights (Ting 1966, as in ``law``).
         """
         turn = int(np.argmin(separation))
         lowest, top = float(separation[turn]), max(clear, float(separation.max()))
@@ -55,7 +43,7 @@ class FlatMotion(NamedTuple):
         before = relaxation.duration(dwelt + rising, retracted, longest)
         left = np.minimum(lowest + self.speed * before, top)
         ages = np.concatenate([np.zeros(turn + 1), dwelt + rising + before])
-        return Contacts(np.concatenate([separation[: turn + 1], left]), ages)
+        return np.concatenate([separation[: turn + 1], left]), ages
 
     def _since_turn(self, separation: Floats, lowest: float) -> tuple[Floats, Floats]:
         """Return the time [s] of the dwell at the turning point, and since then, for each step after it."""
