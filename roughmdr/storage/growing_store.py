@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 
 from roughmdr.numerics.arguments import Ints
 from roughmdr.storage.files import convert_os_errors, is_zarr
-from roughmdr.storage.labelled import Labelled
-from roughmdr.storage.zarr_store import block_of, write_arrays
+from roughmdr.storage.labelled import Labelled, block_of
+from roughmdr.storage.zarr_store import write_arrays
 from roughmdr.variables import NOT_RUN
 
 

@@ -1,7 +1,8 @@
 """Labelled arrays: variables, coordinates and attributes as xarray has them, without the time to import xarray."""
 
 import hashlib
-from collections.abc import Hashable, Iterator, Mapping
+from collections.abc import Hashable, Iterable, Iterator, Mapping
+from types import EllipsisType
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -102,3 +103,23 @@ def _bytes_of(values: NDArray[Any]) -> Iterator[bytes | memoryview]:
     texts = values.ravel()
     for first in range(0, texts.size, _TEXTS_AT_ONCE):
         yield ("\0" * (first > 0) + "\0".join(map(str, texts[first : first + _TEXTS_AT_ONCE].tolist()))).encode()
+
+
+def chunks_of(shape: tuple[int, ...], most: int) -> tuple[int, ...]:
+    """Return the lengths of blocks of ``most`` elements at most, whole along as many last dimensions as fit."""
+    lengths, room = list[int](), most
+    for size in reversed(shape):
+        lengths.insert(0, max(1, min(size, room)))
+        room //= lengths[0]
+    return tuple(lengths)
+
+
+def blocks(shape: tuple[int, ...], lengths: tuple[int, ...]) -> Iterator[tuple[slice | EllipsisType, ...]]:
+    """Yield the indices of all blocks of these lengths, each an array."""
+    for number in np.ndindex(*(-(-size // length) for size, length in zip(shape, lengths, strict=True))):
+        yield block_of(number, lengths) or (...,)
+
+
+def block_of(number: Iterable[int], lengths: tuple[int, ...]) -> tuple[slice, ...]:
+    """Return the indices of what is in a block, which is given by its number along each dimension."""
+    return tuple(slice(i * length, (i + 1) * length) for i, length in zip(number, lengths, strict=True))

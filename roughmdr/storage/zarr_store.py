@@ -2,7 +2,7 @@
 
 import math
 import warnings
-from collections.abc import Collection, Iterable, Iterator
+from collections.abc import Collection, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -12,7 +12,7 @@ import numpy as np
 from roughmdr.errors import RoughmdrError, StoreError
 from roughmdr.storage.coordinates import attributes_in_file, labelled_of
 from roughmdr.storage.files import replace_folder_atomically
-from roughmdr.storage.labelled import Array, Labelled, texts_as_objects
+from roughmdr.storage.labelled import Array, Labelled, blocks, chunks_of, texts_as_objects
 from roughmdr.storage.room import Room, beside
 from roughmdr.variables import LAW_VARIABLES
 
@@ -42,7 +42,9 @@ def write_arrays(data: Labelled, folder: Path, later: Collection[str] = ()) -> d
         group = zarr.open_group(folder, mode="a", zarr_format=3)
         group.attrs.put({name: _plain(value) for name, value in data.attrs.items()})
         arrays = data.coordinates | data.variables
-        chunks = _chunks(max(arrays.values(), key=lambda array: array.values.size))
+        largest = max(arrays.values(), key=lambda array: array.values.size)
+        # All steps of as many realisations, and cells, as a chunk holds.
+        chunks = dict(zip(largest.dims, chunks_of(largest.values.shape, _CHUNK_SIZE), strict=True))
         for name, array in arrays.items():
             attrs = {key: _plain(value) for key, value in attributes_in_file(data, name).items()}
             along = tuple(chunks.get(dim, data.sizes[dim]) for dim in array.dims)
@@ -50,7 +52,7 @@ def write_arrays(data: Labelled, folder: Path, later: Collection[str] = ()) -> d
                 group[name].attrs.put(attrs)
                 continue
             created[name] = _create(group, name, array, attrs, along)
-            for block in () if name in later else _blocks(array.values.shape, along):
+            for block in () if name in later else blocks(array.values.shape, along):
                 part = np.asarray(array.values[block])
                 created[name][block] = part.astype(object) if part.dtype.kind in "OU" else part
         zarr.consolidate_metadata(folder)
@@ -74,28 +76,6 @@ def _create(
     )
 
 
-def _blocks(shape: tuple[int, ...], chunks: tuple[int, ...]) -> Iterator[tuple[slice, ...]]:
-    """Yield the indices of each chunk."""
-    for first in np.ndindex(*(-(-size // chunk) for size, chunk in zip(shape, chunks, strict=True))):
-        yield block_of(first, chunks)
-
-
-def block_of(number: Iterable[int], chunks: tuple[int, ...]) -> tuple[slice, ...]:
-    """Return the indices of what is in a chunk, which is given by its number along each dimension."""
-    return tuple(slice(i * chunk, (i + 1) * chunk) for i, chunk in zip(number, chunks, strict=True))
-
-
-def _chunks(largest: Array) -> dict[str, int]:
-    """Return the chunks of all arrays along each dimension of the largest: all steps of as many realisations, and
-    cells, as a chunk holds.
-    """
-    chunks, room = dict[str, int](), _CHUNK_SIZE
-    for dim, size in zip(reversed(largest.dims), reversed(largest.values.shape), strict=True):
-        chunks[dim] = max(1, min(size, room))
-        room //= chunks[dim]
-    return chunks
-
-
 def _plain(value: Any) -> Any:
     """Return an attribute as JSON has it."""
     return value.tolist() if isinstance(value, np.ndarray | np.generic) else value
@@ -112,16 +92,10 @@ def read_zarr(path: Path) -> Labelled:
         return labelled_of(arrays, dict(group.attrs))
 
 
-def read_zarr_attributes(path: Path) -> dict[str, Any]:
-    """Return the attributes of a store; RoughmdrError if it cannot be read."""
+def read_zarr_outline(path: Path) -> tuple[dict[str, Any], dict[str, tuple[str, ...]]]:
+    """Return the attributes of a store, and the dimensions of each array; RoughmdrError if it cannot be read."""
     with _opened(path) as group:
-        return dict(group.attrs)
-
-
-def read_zarr_dimensions(path: Path) -> dict[str, tuple[str, ...]]:
-    """Return the dimensions of each array of a store; RoughmdrError if it cannot be read."""
-    with _opened(path) as group:
-        return {name: _dimensions(stored) for name, stored in group.arrays()}
+        return dict(group.attrs), {name: _dimensions(stored) for name, stored in group.arrays()}
 
 
 @contextmanager
@@ -160,7 +134,7 @@ def _read(stored: "zarr.Array[Any]", room: Room) -> Array:
     dims = _dimensions(stored)
     if stored.dtype == np.float64:
         values = room.empty(stored.shape)
-        for block in _blocks(stored.shape, stored.chunks):
+        for block in blocks(stored.shape, stored.chunks):
             values[block] = stored[block]
     else:
         values = texts_as_objects(np.asarray(stored[...]))
