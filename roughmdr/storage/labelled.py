@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from roughmdr.variables import STATED
+from roughmdr.variables import AUXILIARY_COORDINATES, STATED, STEP_COORDINATES
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -52,6 +52,35 @@ class Labelled(NamedTuple):
             }
 
         return cls(arrays(dataset.data_vars), arrays(dataset.coords), dict(dataset.attrs))
+
+    @classmethod
+    def from_file(cls, arrays: Mapping[str, Array], attrs: dict[str, Any]) -> "Labelled":
+        """Tell the coordinates of a file from its variables: dimensions, those declared, and those that others name.
+
+        ``arrays`` have all their attributes, of which ``coordinates`` names others (CF-1.11, chapter 5).
+        """
+        coordinates, own = {dim for array in arrays.values() for dim in array.dims} | {*AUXILIARY_COORDINATES}, {}
+        for name, array in arrays.items():
+            text = array.attrs.get("coordinates", "")
+            named = set(text.split()) if isinstance(text, str) else set()
+            coordinates |= named
+            if "separation" not in named and not named.isdisjoint(STEP_COORDINATES):  # a machine moves the flat
+                coordinates.discard("separation")
+            kept = {key: value for key, value in array.attrs.items() if key not in ("coordinates", "_FillValue")}
+            own[name] = array._replace(attrs=kept)
+        return cls(
+            {name: array for name, array in own.items() if name not in coordinates},
+            {name: array for name, array in own.items() if name in coordinates},
+            attrs,
+        )
+
+    def attributes_in_file(self, name: str) -> dict[str, Any]:
+        """Return the attributes of an array, of a variable with those coordinates that are no dimension."""
+        if name in self.coordinates:
+            return self.coordinates[name].attrs
+        dims, _, attrs = self.variables[name]
+        named = [other for other, each in self.coordinates.items() if each.dims != (other,) and {*each.dims} <= {*dims}]
+        return {**attrs, "coordinates": " ".join(named)} if named else attrs
 
     def checksum(self) -> str:
         """Return a hash of the ``STATED`` attributes and of all arrays but ``run_time``, which depends on the clock."""

@@ -19,7 +19,6 @@ import numpy as np
 
 from roughmdr.errors import RoughmdrError, StoreError
 from roughmdr.schema.wording import format_bytes
-from roughmdr.storage.coordinates import attributes_in_file, labelled_of
 from roughmdr.storage.files import check_regular_file, replace_atomically
 from roughmdr.storage.labelled import Array, Labelled, blocks, chunks_of
 from roughmdr.storage.memory import check_memory
@@ -77,7 +76,7 @@ def _define(file: "netCDF4.Dataset", data: Labelled) -> None:
         kind = array.values.dtype.kind
         fill = np.nan if kind == "f" and name in data.variables else None
         variable = file.createVariable(name, str if kind in "OU" else array.values.dtype, array.dims, fill_value=fill)
-        variable.setncatts(attributes_in_file(data, name))
+        variable.setncatts(data.attributes_in_file(name))
 
 
 def _reserve(path: Path, size: int) -> None:
@@ -118,7 +117,7 @@ def read_netcdf(path: Path) -> Labelled:
             arrays[name] = Array(variable.dimensions, _read_values(variable, room), attrs)
             if arrays[name].values.ndim != len(variable.dimensions):  # characters of a string, in the classic format
                 raise ValueError(f"{name} is an array of characters; it must be one of netCDF-4 strings")
-        return labelled_of(arrays, {key: file.getncattr(key) for key in file.ncattrs()})
+        return Labelled.from_file(arrays, {key: file.getncattr(key) for key in file.ncattrs()})
 
 
 def read_netcdf_outline(path: Path) -> tuple[dict[str, Any], dict[str, tuple[str, ...]]]:

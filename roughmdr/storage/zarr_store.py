@@ -16,7 +16,6 @@ from numpy.typing import NDArray
 
 from roughmdr.errors import RoughmdrError, StoreError
 from roughmdr.numerics.arguments import Ints
-from roughmdr.storage.coordinates import attributes_in_file, labelled_of
 from roughmdr.storage.files import convert_os_errors, is_zarr, replace_folder_atomically
 from roughmdr.storage.labelled import Array, Labelled, block_of, blocks, chunks_of, texts_as_objects
 from roughmdr.storage.room import Room, beside
@@ -52,7 +51,7 @@ def write_arrays(data: Labelled, folder: Path, later: Collection[str] = ()) -> d
         # All steps of as many realisations, and cells, as a chunk holds.
         chunks = dict(zip(largest.dims, chunks_of(largest.values.shape, _CHUNK_SIZE), strict=True))
         for name, array in arrays.items():
-            attrs = {key: _plain(value) for key, value in attributes_in_file(data, name).items()}
+            attrs = {key: _plain(value) for key, value in data.attributes_in_file(name).items()}
             along = tuple(chunks.get(dim, data.sizes[dim]) for dim in array.dims)
             if name in group and group[name].chunks == along:
                 group[name].attrs.put(attrs)
@@ -133,7 +132,7 @@ def read_zarr(path: Path) -> Labelled:
         for name, (dims, values, _) in arrays.items():
             if any(sizes.setdefault(dim, size) != size for dim, size in zip(dims, values.shape, strict=True)):
                 raise ValueError(f"{name} has another number of {', '.join(dims)} than other arrays")
-        return labelled_of(arrays, dict(group.attrs))
+        return Labelled.from_file(arrays, dict(group.attrs))
 
 
 def read_zarr_outline(path: Path) -> tuple[dict[str, Any], dict[str, tuple[str, ...]]]:
