@@ -152,3 +152,8 @@ def blocks(shape: tuple[int, ...], lengths: tuple[int, ...]) -> Iterator[tuple[s
 def block_of(number: Iterable[int], lengths: tuple[int, ...]) -> tuple[slice, ...]:
     """Return the indices of what is in a block, which is given by its number along each dimension."""
     return tuple(slice(i * length, (i + 1) * length) for i, length in zip(number, lengths, strict=True))
+
+
+def is_text(value: object) -> bool:
+    """Return whether a value is a text that can be written as UTF-8."""
+    return isinstance(value, str) and value.encode(errors="replace").decode() == value

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from roughmdr.errors import RoughmdrError, StoreError
 from roughmdr.numerics.arguments import Ints
-from roughmdr.storage.files import convert_os_errors, is_zarr, replace_folder_atomically
+from roughmdr.storage.files import convert_os_errors, is_zarr, replace_atomically
 from roughmdr.storage.labelled import Array, Labelled, block_of, blocks, chunks_of, texts_as_objects
 from roughmdr.storage.room import Room, beside
 from roughmdr.variables import LAW_VARIABLES, NOT_RUN
@@ -35,7 +35,7 @@ def write_zarr(data: Labelled, path: Path, folder: Path | None = None, grown: Pa
 
     A store that has ``grown`` until it holds all curves of ``data`` becomes it. StoreError if that fails.
     """
-    with replace_folder_atomically(path, folder, grown) as temporary:
+    with replace_atomically(path, folder, as_zarr=True, begun=grown) as temporary:
         write_arrays(data, temporary)
 
 
