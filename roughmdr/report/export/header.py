@@ -80,8 +80,8 @@ def table_lines(
         )
     if quantity.whole:
         yield from whole_lines(cell, table.law, law, quantity, units)
-    if table.departure > 0.0:
-        departure = f"{table.departure / pressure.size:.3g} {pressure.name}"
+    if table.law.departure > 0.0:
+        departure = f"{table.law.departure / pressure.size:.3g} {pressure.name}"
         yield "departure", f"up to {departure} at steps that a load jumps over"
     yield from model_lines(cell)
     if quantity.name == "area":
