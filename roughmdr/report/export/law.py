@@ -26,13 +26,13 @@ class Quantity(NamedTuple):
 
     name: str
     sources: tuple[Source, ...]
-    over_pressure: bool
+    over_pressure: bool = False
     """Whether tables have it over the pressure, else over the overclosure."""
     whole: bool = False
     """Whether it is the whole law of a body at given separations, else the part per area that a load can follow."""
 
 
-_PRESSURE = Quantity("pressure", (Source("pressure", "Pa", False), Source("force", "Pa", True)), over_pressure=False)
+_PRESSURE = Quantity("pressure", (Source("pressure", "Pa", False), Source("force", "Pa", True)))
 QUANTITIES = {
     quantity.name: quantity
     for quantity in (
@@ -42,11 +42,9 @@ QUANTITIES = {
             (Source("thermal_conductance", "W/m2/K", True), Source("electrical_conductance", "S/m2", True)),
             over_pressure=True,
         ),
-        Quantity(
-            "area", (Source("contact_fraction", "1", False), Source("contact_area", "1", True)), over_pressure=False
-        ),
+        Quantity("area", (Source("contact_fraction", "1", False), Source("contact_area", "1", True))),
         Quantity("tangential", (Source("tangential_stiffness", "Pa/m", True),), over_pressure=True),
-        Quantity("force", (Source("force", "N", False),), over_pressure=False, whole=True),
+        Quantity("force", (Source("force", "N", False),), whole=True),
     )
 }
 """Quantities of tables by their names."""
