@@ -24,10 +24,7 @@ from typing import TYPE_CHECKING, Any
 from roughmdr.analysis.register import register
 
 if TYPE_CHECKING:
-    from roughmdr import (
-        spectrum as spectrum,
-        theory as theory,
-    )
+    from roughmdr import spectrum as spectrum, theory as theory
     from roughmdr.aggregate import load_separation as load_separation
     from roughmdr.asperity.equilibria import equilibria as equilibria
     from roughmdr.asperity.fields.evaluate import (

@@ -56,11 +56,7 @@ def result_table(result: ResultView, file: Path | None, elapsed: float | None = 
         "run_time": float(np.nansum(result.variables["run_time"].values)),
         "elapsed": elapsed,
         "seed": int(attrs["seed"]),
-        "versions": {
-            "source": attrs["source"],
-            "packages": attrs["packages"],
-            "numbers": attrs.get("versions", ""),
-        },
+        "versions": {"source": attrs["source"], "packages": attrs["packages"], "numbers": attrs.get("versions", "")},
         "history": attrs["history"].splitlines(),
         "scene": attrs["scene"],
     }
