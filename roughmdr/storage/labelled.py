@@ -122,12 +122,8 @@ def texts_as_objects(values: NDArray[Any]) -> NDArray[Any]:
 def _bytes_of(values: NDArray[Any]) -> Iterator[bytes | memoryview]:
     """Yield the bytes to hash, part by part: numbers as they are, texts separated by a zero byte."""
     if values.dtype.kind not in "OU":
-        if values.nbytes > _BYTES_AT_ONCE:
-            half = len(values) // 2
-            for part in (values[:half], values[half:]) if half else (values[0],):
-                yield from _bytes_of(part)
-        else:
-            yield np.ascontiguousarray(values).reshape(-1).view(np.uint8).data
+        for block in blocks(values.shape, chunks_of(values.shape, _BYTES_AT_ONCE // max(values.itemsize, 1))):
+            yield np.ascontiguousarray(values[block]).reshape(-1).view(np.uint8).data
         return
     texts = values.ravel()
     for first in range(0, texts.size, _TEXTS_AT_ONCE):
