@@ -17,7 +17,7 @@ from roughmdr.errors import RoughmdrError
 from roughmdr.schema.units import DIMENSIONLESS, quantity
 from roughmdr.spectrum import SelfAffine
 from roughmdr.storage.labelled import Labelled
-from roughmdr.storage.netcdf_writing import write_netcdf
+from roughmdr.storage.netcdf_store import write_netcdf
 from roughmdr.storage.result_file import provenance
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "pipelines"))

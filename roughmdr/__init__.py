@@ -24,10 +24,7 @@ from typing import TYPE_CHECKING, Any
 from roughmdr.analysis.register import register
 
 if TYPE_CHECKING:
-    from roughmdr import (
-        spectrum as spectrum,
-        theory as theory,
-    )
+    from roughmdr import spectrum as spectrum, theory as theory
     from roughmdr.aggregate import load_separation as load_separation
     from roughmdr.asperity.equilibria import equilibria as equilibria
     from roughmdr.asperity.fields.evaluate import (
@@ -75,50 +72,28 @@ if TYPE_CHECKING:
     )
 
 _ROOMS = {
-    "aggregate": ("load_separation",),
-    "asperity.equilibria": ("equilibria",),
-    "asperity.indent": ("indent",),
-    "asperity.pull_off": ("pull_off",),
-    "asperity.tabor": ("tabor",),
-    "ensemble": ("generate",),
-    "errors": (
-        "FailedRuns",
-        "LimitWarning",
-        "OutOfRange",
-        "RoughmdrError",
-        "SceneError",
-        "ShapeError",
-        "StoreError",
-        "Unfinished",
-    ),
-    "asperity.fields.evaluate": ("axis_stress", "pressure", "surface_displacement"),
-    "fitting.fit": ("fit",),
-    "report.cite": ("cite",),
-    "report.export.write": ("export",),
-    "report.summary": ("info",),
-    "report.page": ("write_report",),
-    "pictures.plot": ("plot",),
-    "runner.run": ("run",),
-    "scene": ("Scene",),
-    "schema.material": ("effective_modulus",),
-    "shapes": (
-        "CappedParaboloid",
-        "Cone",
-        "FlatPunch",
-        "MdrTable",
-        "Paraboloid",
-        "PowerLaw",
-        "PowerSeries",
-        "RoundedCone",
-        "RoundedPunch",
-        "Sphere",
-        "Tabulated",
-        "TruncatedCone",
-        "TruncatedParaboloid",
-    ),
+    "aggregate": "load_separation",
+    "asperity.equilibria": "equilibria",
+    "asperity.fields.evaluate": "axis_stress pressure surface_displacement",
+    "asperity.indent": "indent",
+    "asperity.pull_off": "pull_off",
+    "asperity.tabor": "tabor",
+    "ensemble": "generate",
+    "errors": "FailedRuns LimitWarning OutOfRange RoughmdrError SceneError ShapeError StoreError Unfinished",
+    "fitting.fit": "fit",
+    "pictures.plot": "plot",
+    "report.cite": "cite",
+    "report.export.write": "export",
+    "report.page": "write_report",
+    "report.summary": "info",
+    "runner.run": "run",
+    "scene": "Scene",
+    "schema.material": "effective_modulus",
+    "shapes": "CappedParaboloid Cone FlatPunch MdrTable Paraboloid PowerLaw PowerSeries RoundedCone RoundedPunch "
+    "Sphere Tabulated TruncatedCone TruncatedParaboloid",
 }
 """Public names by the module that holds them; ``help`` would print all that an ``__all__`` lists."""
-_MODULE_OF = {name: module for module, names in _ROOMS.items() for name in names}
+_MODULE_OF = {name: module for module, names in _ROOMS.items() for name in names.split()}
 
 register()
 

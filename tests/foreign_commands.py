@@ -17,7 +17,7 @@ from scenes import ASPERITIES, scene
 import roughmdr as rm
 from roughmdr.cli import main
 from roughmdr.errors import FailedRuns
-from roughmdr.storage.netcdf_reading import read_netcdf
+from roughmdr.storage.netcdf_store import read_netcdf
 
 FEW = {**ASPERITIES, "count": 5}
 SCENE = scene(

@@ -15,7 +15,7 @@ import xarray as xr
 from roughmdr.errors import LimitWarning
 from roughmdr.storage.files import replace_atomically
 from roughmdr.storage.labelled import Labelled
-from roughmdr.storage.netcdf_writing import write_netcdf
+from roughmdr.storage.netcdf_store import write_netcdf
 from roughmdr.storage.result_file import provenance
 
 if TYPE_CHECKING:

@@ -22,7 +22,7 @@ from roughmdr.elements.half_space import BoundaryElements
 from roughmdr.ensemble.spectral.section import SpectrumAsperities
 from roughmdr.numerics.arguments import Floats
 from roughmdr.storage.labelled import Labelled
-from roughmdr.storage.netcdf_writing import write_netcdf
+from roughmdr.storage.netcdf_store import write_netcdf
 from studies.at_pressure import FRACTIONS, QUANTITIES, dataset_of, draw, report as table_of, row_of
 from studies.study import Study, in_two_processes, without_limits
 from studies.versus_bem.ensembles import SIZE, Case, height_map

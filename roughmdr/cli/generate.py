@@ -30,7 +30,7 @@ def generate(
     from roughmdr.report.summary import describe_ensemble
     from roughmdr.scene import read
     from roughmdr.storage.files import NETCDF_ENDINGS, check_ending, check_writable
-    from roughmdr.storage.netcdf_writing import write_netcdf
+    from roughmdr.storage.netcdf_store import write_netcdf
     from roughmdr.storage.result_file import check_nothing_lost, check_same_kind, provenance
 
     validated = read(scene, changes)

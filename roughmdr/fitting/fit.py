@@ -25,7 +25,7 @@ from roughmdr.schema.wording import short_repr
 from roughmdr.stages import stages_in
 from roughmdr.storage.files import NETCDF_ENDINGS, check_ending, check_writable
 from roughmdr.storage.labelled import Labelled
-from roughmdr.storage.netcdf_writing import write_netcdf
+from roughmdr.storage.netcdf_store import write_netcdf
 from roughmdr.storage.result_file import FIT, check_same_kind
 
 if TYPE_CHECKING:

@@ -11,10 +11,10 @@ import numpy as np
 
 from roughmdr.errors import RoughmdrError, StoreError, level_outside
 from roughmdr.fitting.words import COMPARED, curve_names, is_open, load_of
-from roughmdr.storage.labelled import Array, Labelled
+from roughmdr.storage.labelled import Array, Labelled, is_text
 from roughmdr.storage.reading import read_arrays
 from roughmdr.storage.result_file import FIT, is_fit
-from roughmdr.storage.result_form import Form, attribute_faults, is_text, refuse, with_units
+from roughmdr.storage.result_form import Form, attribute_faults, refuse, with_units
 from roughmdr.storage.result_scene import scene_faults
 from roughmdr.variables import BRANCHES, FIT_ATTRIBUTES, MEASURED
 

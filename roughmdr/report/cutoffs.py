@@ -2,7 +2,6 @@
 
 import math
 from functools import partial
-from typing import Any
 
 import numpy as np
 
@@ -61,12 +60,8 @@ def tabulate_cutoffs(scene: Scene, lengths: str) -> str:
 
 
 def _row(scene: Scene, section: SurfaceAsperities, cutoff: float | None) -> tuple[str, ...]:
-    given: dict[str, Any] = section.model_dump(exclude_unset=True) | {
-        "cutoff": cutoff,
-        "model": "summits",
-        "shape": None,
-    }
-    summits = type(section).model_validate(given).asperities
+    given = {"cutoff": cutoff, "model": "summits", "shape": None}
+    summits = type(section).model_validate(section.model_dump(exclude_unset=True) | given).asperities
     attrs, count = summits.attrs, summits.height.size
     area = summits.nominal_area or math.inf
 

@@ -180,8 +180,8 @@ class LawTable(TypedDict):
     runs: int
     control: str  # name of the values, such as separation
     values: list[float]  # SI
-    mean: list[float | None]  # SI, likewise the error
-    standard_error: list[float | None]  # null where it is not known
+    mean: list[float]  # SI, likewise the error
+    standard_error: list[float]  # null where it is not known
 
 
 class PartsTable(TypedDict):

@@ -73,13 +73,6 @@ def write_report(result: "str | Path | xr.Dataset", out: str | Path, *, fresh: b
     write_page(source, path)
 
 
-def write_page(source: Drawable, path: Path) -> None:
-    """Write the page of a result or a fit that was read; StoreError if it is none, or no run was computed."""
-    text = page_of(source)
-    with replace_atomically(path) as temporary:
-        temporary.write_text(text, encoding="utf-8")
-
-
 def check_page(path: Path, file: Path | None, *, fresh: bool) -> None:
     """Raise StoreError unless a page can be written to ``path``; with ``fresh`` it may replace a file of any kind."""
     check_writable(path, [] if file is None else [file])
@@ -88,8 +81,8 @@ def check_page(path: Path, file: Path | None, *, fresh: bool) -> None:
         check_same_kind(path, "html")
 
 
-def page_of(source: Drawable) -> str:
-    """Return that page."""
+def write_page(source: Drawable, path: Path) -> None:
+    """Write the page of a result or a fit that was read; StoreError if it is none, or no run was computed."""
     from importlib.resources import files
 
     from jinja2 import Environment
@@ -99,7 +92,7 @@ def page_of(source: Drawable) -> str:
     attrs = source.data.attrs
     template = Environment(autoescape=True).from_string(files(__package__).joinpath(_TEMPLATE).read_text("utf-8"))
     result = source.result if source.content == "result" else None
-    return template.render(
+    text = template.render(
         title=escape_controls(attrs["title"]),
         doubt=source.doubt,
         warnings=attrs.get("warnings", "").splitlines(),
@@ -109,6 +102,8 @@ def page_of(source: Drawable) -> str:
         citations=describe_papers(attrs["scene"], result, bibtex=False),
         bibtex=describe_papers(attrs["scene"], result, bibtex=True),
     )
+    with replace_atomically(path) as temporary:
+        temporary.write_text(text, encoding="utf-8")
 
 
 def _of_result(source: Drawable) -> dict[str, Any]:

@@ -101,16 +101,14 @@ def parts_table(kept: Kept) -> PartsTable:
 
 def _law(progress: Progress, law: LawSoFar) -> LawTable:
     assert progress.plan is not None  # or there would be no law
-    found = law.moments.mean.tolist(), law.moments.standard_error.tolist()
-    mean, error = ([each if math.isfinite(each) else None for each in numbers] for numbers in found)
     return {
         "swept": _swept(progress.plan, law.cell),
         "variable": law.variable,
         "runs": law.moments.size,
         "control": progress.plan.control,
         "values": progress.plan.cells[law.cell].values[law.steps].tolist(),
-        "mean": mean,
-        "standard_error": error,
+        "mean": law.moments.mean.tolist(),
+        "standard_error": law.moments.standard_error.tolist(),
     }
 
 

@@ -43,10 +43,8 @@ def prospect_lines(prospect: "Prospect") -> Iterator[tuple[str, str]]:
         paired = prospect.interaction is not None and prospect.interaction.model == "pairwise"
         told = "estimated from a small part of the asperities" if paired else "as expected"
         if lost := sum(math.isnan(pressure_at_closest(cell)) for cell in cells):
-            yield (
-                "pressure",
-                f"not known at closest approach: no equilibrium is found there in {lost} of {len(cells)} cells",
-            )
+            none = f"no equilibrium is found there in {lost} of {len(cells)} cells"
+            yield "pressure", f"not known at closest approach: {none}"
         else:
             yield "pressure", f"{over_cells('Pa', pressure_at_closest)} at closest approach, {told}"
         if any(largest_tension(cell) > 0.0 for cell in cells):

@@ -9,15 +9,7 @@ import numpy as np
 from roughmdr.model_error.parts import ALL_PARTS
 from roughmdr.report.advice import advice_on
 from roughmdr.report.contacts import sample_of_result
-from roughmdr.report.documents import (
-    AccuracyTable,
-    CellTable,
-    CoordinateTable,
-    PullOffTable,
-    ResultTable,
-    paragraphs,
-    trust_table,
-)
+from roughmdr.report.documents import CellTable, CoordinateTable, PullOffTable, ResultTable, paragraphs, trust_table
 from roughmdr.report.summary import describe_failed, first_remark
 from roughmdr.result.model_errors import largest_of_result
 from roughmdr.result.trust import trust_of_result
@@ -56,24 +48,18 @@ def result_table(result: ResultView, file: Path | None, elapsed: float | None = 
         "run_time": float(np.nansum(result.variables["run_time"].values)),
         "elapsed": elapsed,
         "seed": int(attrs["seed"]),
-        "versions": {
-            "source": attrs["source"],
-            "packages": attrs["packages"],
-            "numbers": attrs.get("versions", ""),
-        },
+        "versions": {"source": attrs["source"], "packages": attrs["packages"], "numbers": attrs.get("versions", "")},
         "history": attrs["history"].splitlines(),
         "scene": attrs["scene"],
     }
-    told = paragraphs(line for stage in STAGES for line in stage.result_lines(result))
-    return cast("ResultTable", {**table, **told})
+    return cast("ResultTable", table | paragraphs(line for stage in STAGES for line in stage.result_lines(result)))
 
 
 def coordinate_tables(coordinates: Mapping[str, Array], sizes: dict[str, int]) -> dict[str, CoordinateTable]:
     """Return the coordinates of the swept keys."""
-    first = (0,) * len(sizes)
     return {
         name: {"units": coordinates[name].attrs.get("units", ""), "values": coordinates[name].values.tolist()}
-        for name in swept_values(coordinates, list(sizes), first)
+        for name in swept_values(coordinates, list(sizes), (0,) * len(sizes))
     }
 
 
@@ -93,7 +79,6 @@ def _cell(result: ResultView, number: int, cell: tuple[int, ...]) -> CellTable:
     yielding = [*YIELDING, *(name for name in YIELDED if name in result.variables)]
     status, counts = values("status"), values("realization_count")
     method = result.method(cell)
-    accuracy: AccuracyTable | None = {"reached": largest("accuracy_reached"), "method": method} if method else None
     return {
         "swept": swept_table(result.coordinates, result.sweep, number),
         "realizations": status.size if np.isnan(counts).any() else int(counts[0]),
@@ -111,7 +96,7 @@ def _cell(result: ResultView, number: int, cell: tuple[int, ...]) -> CellTable:
         "yielding": {name: float(getattr(np, RUN_DIAGNOSTICS[name].merge).reduce(values(name))) for name in yielding},
         "numerical_error": largest("numerical_error"),
         "run_time": float(np.nansum(values("run_time"))),
-        "accuracy": accuracy,
+        "accuracy": {"reached": largest("accuracy_reached"), "method": method} if method else None,
     }
 
 

@@ -34,10 +34,8 @@ def motion_lines(coordinates: Mapping[str, Array]) -> Iterator[tuple[str, str]]:
     """Yield how long a viscoelastic body is pressed and released."""
     if TIME.name in coordinates:
         last = coordinates[TIME.name].values[..., -1]
-        yield (
-            "motion",
-            f"{format_quantity(float(last.min()), 's', to=float(last.max()))} from the first step to the last",
-        )
+        times = format_quantity(float(last.min()), "s", to=float(last.max()))
+        yield "motion", f"{times} from the first step to the last"
 
 
 def describe_result(result: ResultView, elapsed: float | None = None, *, left_out: bool = True) -> str:

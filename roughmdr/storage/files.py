@@ -11,6 +11,7 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from roughmdr.errors import RoughmdrError, StoreError
+from roughmdr.storage.labelled import is_text
 
 NETCDF_ENDINGS = (".nc", ".nc4", ".cdf", ".netcdf")
 ZARR_ENDING = ".zarr"
@@ -85,7 +86,7 @@ def check_writable(path: Path, inputs: Iterable[Path] = (), *, as_zarr: bool = F
             raise StoreError(f"{label}: the folder {target.parent} does not exist")
         if is_zarr(target.parent):
             raise StoreError(f"{label}: {target.parent} is a Zarr store; the output must be outside of it")
-        if not _is_utf8(path.absolute()) or not _is_utf8(target.absolute()):
+        if not (is_text(str(path.absolute())) and is_text(str(target.absolute()))):
             raise StoreError(f"{str(path)!r}: the name is not UTF-8, and netCDF could not read it again; give another")
         tempfile.TemporaryFile(dir=target.parent).close()  # without a name where it can, so that a kill leaves none
     except OSError as error:
@@ -118,10 +119,6 @@ def check_ending(path: Path, kind: str, endings: Sequence[str]) -> str:
     return ending
 
 
-def _is_utf8(path: Path) -> bool:
-    return str(path).encode(errors="replace").decode() == str(path)
-
-
 @contextmanager
 def convert_os_errors(path: Path) -> Iterator[None]:
     """Convert an OSError raised inside to a StoreError that names ``path``."""
@@ -132,54 +129,43 @@ def convert_os_errors(path: Path) -> Iterator[None]:
 
 
 @contextmanager
-def replace_atomically(path: Path, folder: Path | None = None) -> Iterator[Path]:
+def replace_atomically(
+    path: Path, folder: Path | None = None, *, as_zarr: bool = False, begun: Path | None = None
+) -> Iterator[Path]:
     """Yield a temporary file to write to; it replaces ``path`` once everything is written and on disk.
 
     The temporary file is in ``folder``, which must be on the same disk; by default beside ``path``. If ``path`` is a
-    link, its target is replaced.
+    link, its target is replaced. A Zarr store is a folder, which may have ``begun``. Where the system cannot exchange
+    two names, nothing is at ``path`` for a moment while a store is replaced; the old one is ``before_of`` it.
     """
-    check_writable(path)
+    check_writable(path, as_zarr=as_zarr)
     path = destination(path)
     with convert_os_errors(path):
-        with tempfile.NamedTemporaryFile(
-            prefix=_TEMPORARY_PREFIX, suffix=".tmp", dir=folder or path.parent, delete=False
-        ) as created:
-            temporary = Path(created.name)
+        if as_zarr:
+            temporary = begun or Path(tempfile.mkdtemp(".tmp", _TEMPORARY_PREFIX, folder or path.parent))
+        else:
+            descriptor, name = tempfile.mkstemp(".tmp", _TEMPORARY_PREFIX, folder or path.parent)
+            os.close(descriptor)
+            temporary = Path(name)
         try:
             yield temporary
-            with temporary.open("rb") as written:
-                os.fsync(written.fileno())
-            temporary.chmod(0o666 & ~_umask())
-            temporary.replace(path)
-            sync_folder(path.parent)
-        finally:
-            temporary.unlink(missing_ok=True)
-
-
-@contextmanager
-def replace_folder_atomically(path: Path, folder: Path | None = None, begun: Path | None = None) -> Iterator[Path]:
-    """Yield a temporary folder to write to, as ``replace_atomically`` does a file, or one that was ``begun``.
-
-    Where the system cannot exchange two names, nothing is at ``path`` for a moment; the old one is ``before_of`` it.
-    """
-    check_writable(path, as_zarr=True)
-    path = destination(path)
-    with convert_os_errors(path):
-        temporary = begun or Path(tempfile.mkdtemp(".tmp", _TEMPORARY_PREFIX, folder or path.parent))
-        try:
-            yield temporary
-            for each in (*temporary.rglob("*"), temporary):
+            for each in (*temporary.rglob("*"), temporary) if as_zarr else (temporary,):
                 descriptor = os.open(each, os.O_RDONLY)
                 try:
                     os.fsync(descriptor)
                 finally:
                     os.close(descriptor)
-            temporary.chmod(0o777 & ~_umask())
-            if not (path.exists() and _exchange(temporary, path)):
+            temporary.chmod((0o777 if as_zarr else 0o666) & ~_umask())
+            if not as_zarr:
+                temporary.replace(path)
+            elif not (path.exists() and _exchange(temporary, path)):
                 _replace_in_steps(temporary, path)
             sync_folder(path.parent)
         finally:
-            shutil.rmtree(temporary, ignore_errors=True)
+            if as_zarr:
+                shutil.rmtree(temporary, ignore_errors=True)
+            else:
+                temporary.unlink(missing_ok=True)
 
 
 def before_of(path: Path) -> Path:

@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from roughmdr.errors import StoreError
-from roughmdr.storage.labelled import Array, Labelled
+from roughmdr.storage.labelled import Array, Labelled, is_text
 from roughmdr.variables import (
     CELL_VARIABLES,
     COORDINATES,
@@ -149,8 +149,3 @@ def with_units(data: Labelled, forms: dict[str, Form]) -> Labelled:
         }
 
     return data._replace(variables=completed(data.variables), coordinates=completed(data.coordinates))
-
-
-def is_text(value: object) -> bool:
-    """Return whether a value is a text that can be written as UTF-8."""
-    return isinstance(value, str) and value.encode(errors="replace").decode() == value

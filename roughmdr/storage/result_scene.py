@@ -1,7 +1,6 @@
 """The scene in a file, as far as summaries of results rely on it."""
 
 from collections.abc import Iterator
-from typing import Any
 
 from roughmdr.errors import RoughmdrError
 from roughmdr.schema.quantities import adheres
@@ -40,7 +39,9 @@ def scene_faults(text: str) -> Iterator[str]:
             yield f"sweep.{printable(key)} in its scene is no list or range"
             return
     for key in _NAMES:
-        if not all(isinstance(value, str) for value in _values(table, key)):
+        section, name = key.split(".")
+        own, swept = table.get(section, {}).get(name, ""), table.get("sweep", {}).get(key)
+        if not all(isinstance(value, str) for value in [own, *(swept if isinstance(swept, list) else [])]):
             yield f"{key} in its scene is no name"
     variables = table.get("output", {}).get("variables", [])
     if not isinstance(variables, list) or not all(isinstance(name, str) for name in variables):
@@ -49,10 +50,3 @@ def scene_faults(text: str) -> Iterator[str]:
         adheres(table)
     except RoughmdrError as error:
         yield f"adhesion.work in its scene: {error}"
-
-
-def _values(table: dict[str, Any], key: str) -> list[Any]:
-    """Return the values of a dotted key, swept ones included."""
-    section, name = key.split(".")
-    own, swept = table.get(section, {}), table.get("sweep", {}).get(key, [])
-    return [*([own[name]] if name in own else []), *(swept if isinstance(swept, list) else [])]

@@ -10,13 +10,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from roughmdr.storage.labelled import Labelled
+from roughmdr.storage.labelled import Labelled, is_text
 from roughmdr.storage.result_form import (
     attribute_faults,
     companions,
     control_forms,
     forms_of,
-    is_text,
     refuse,
     statistics_of,
     with_units,

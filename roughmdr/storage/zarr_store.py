@@ -1,20 +1,25 @@
-"""Zarr stores: a result as a folder of compressed chunks, of which xarray reads those that are needed."""
+"""Zarr stores: a result as a folder of compressed chunks, of which xarray reads those that are needed.
+
+They can grow: a chunk, which holds a block of runs, is written as soon as all of them are computed.
+"""
 
 import math
+import shutil
 import warnings
-from collections.abc import Collection, Iterable, Iterator
-from contextlib import contextmanager
+from collections.abc import Collection, Iterator
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from roughmdr.errors import RoughmdrError, StoreError
-from roughmdr.storage.coordinates import attributes_in_file, labelled_of
-from roughmdr.storage.files import replace_folder_atomically
-from roughmdr.storage.labelled import Array, Labelled, texts_as_objects
+from roughmdr.numerics.arguments import Ints
+from roughmdr.storage.files import convert_os_errors, is_zarr, replace_atomically
+from roughmdr.storage.labelled import Array, Labelled, block_of, blocks, chunks_of, texts_as_objects
 from roughmdr.storage.room import Room, beside
-from roughmdr.variables import LAW_VARIABLES
+from roughmdr.variables import LAW_VARIABLES, NOT_RUN
 
 if TYPE_CHECKING:
     import zarr
@@ -30,7 +35,7 @@ def write_zarr(data: Labelled, path: Path, folder: Path | None = None, grown: Pa
 
     A store that has ``grown`` until it holds all curves of ``data`` becomes it. StoreError if that fails.
     """
-    with replace_folder_atomically(path, folder, grown) as temporary:
+    with replace_atomically(path, folder, as_zarr=True, begun=grown) as temporary:
         write_arrays(data, temporary)
 
 
@@ -42,15 +47,17 @@ def write_arrays(data: Labelled, folder: Path, later: Collection[str] = ()) -> d
         group = zarr.open_group(folder, mode="a", zarr_format=3)
         group.attrs.put({name: _plain(value) for name, value in data.attrs.items()})
         arrays = data.coordinates | data.variables
-        chunks = _chunks(max(arrays.values(), key=lambda array: array.values.size))
+        largest = max(arrays.values(), key=lambda array: array.values.size)
+        # All steps of as many realisations, and cells, as a chunk holds.
+        chunks = dict(zip(largest.dims, chunks_of(largest.values.shape, _CHUNK_SIZE), strict=True))
         for name, array in arrays.items():
-            attrs = {key: _plain(value) for key, value in attributes_in_file(data, name).items()}
+            attrs = {key: _plain(value) for key, value in data.attributes_in_file(name).items()}
             along = tuple(chunks.get(dim, data.sizes[dim]) for dim in array.dims)
             if name in group and group[name].chunks == along:
                 group[name].attrs.put(attrs)
                 continue
             created[name] = _create(group, name, array, attrs, along)
-            for block in () if name in later else _blocks(array.values.shape, along):
+            for block in () if name in later else blocks(array.values.shape, along):
                 part = np.asarray(array.values[block])
                 created[name][block] = part.astype(object) if part.dtype.kind in "OU" else part
         zarr.consolidate_metadata(folder)
@@ -74,31 +81,47 @@ def _create(
     )
 
 
-def _blocks(shape: tuple[int, ...], chunks: tuple[int, ...]) -> Iterator[tuple[slice, ...]]:
-    """Yield the indices of each chunk."""
-    for first in np.ndindex(*(-(-size // chunk) for size, chunk in zip(shape, chunks, strict=True))):
-        yield block_of(first, chunks)
-
-
-def block_of(number: Iterable[int], chunks: tuple[int, ...]) -> tuple[slice, ...]:
-    """Return the indices of what is in a chunk, which is given by its number along each dimension."""
-    return tuple(slice(i * chunk, (i + 1) * chunk) for i, chunk in zip(number, chunks, strict=True))
-
-
-def _chunks(largest: Array) -> dict[str, int]:
-    """Return the chunks of all arrays along each dimension of the largest: all steps of as many realisations, and
-    cells, as a chunk holds.
-    """
-    chunks, room = dict[str, int](), _CHUNK_SIZE
-    for dim, size in zip(reversed(largest.dims), reversed(largest.values.shape), strict=True):
-        chunks[dim] = max(1, min(size, room))
-        room //= chunks[dim]
-    return chunks
-
-
 def _plain(value: Any) -> Any:
     """Return an attribute as JSON has it."""
     return value.tolist() if isinstance(value, np.ndarray | np.generic) else value
+
+
+class GrowingStore:
+    """A store that is written while its curves are computed; those that are not there yet read as NaN."""
+
+    def __init__(self, data: Labelled, status: NDArray[Any], folder: Path) -> None:
+        """Begin with all but the values of the variables [..., realization, step]; ``status`` is that of their runs.
+
+        StoreError if that fails.
+        """
+        self.folder = folder
+        with convert_os_errors(folder.parent):
+            created = write_arrays(data, folder, later=data.variables)
+        self._curves = {name: (created[name], array.values) for name, array in data.variables.items()}
+        self._runs, self._chunk = next((each.shape[:-1], each.chunks[:-1]) for each, _ in self._curves.values())
+        self._status = status.reshape(self._runs)
+
+    def whole(self, runs: Ints) -> Iterator[tuple[slice, ...]]:
+        """Yield the chunks with any of these runs, counted over all dimensions, of which every run is there."""
+        counts = [-(-size // chunk) for size, chunk in zip(self._runs, self._chunk, strict=True)]
+        along = [each // chunk for each, chunk in zip(np.unravel_index(runs, self._runs), self._chunk, strict=True)]
+        for number in np.unique(np.ravel_multi_index(along, counts)):
+            block = block_of(np.unravel_index(number, counts), self._chunk)
+            if (self._status[block] != NOT_RUN).all():
+                yield block
+
+    def write(self, block: tuple[slice, ...]) -> None:
+        """Write the curves of a chunk; StoreError if that fails."""
+        with convert_os_errors(self.folder.parent):
+            try:
+                for stored, values in self._curves.values():
+                    stored[block] = values[block]
+            finally:
+                if not is_zarr(self.folder):  # somebody removed it; Zarr made its folders again for the chunk
+                    shutil.rmtree(self.folder, ignore_errors=True)
+                    with suppress(OSError):
+                        self.folder.parent.rmdir()
+                    self.folder.stat()
 
 
 def read_zarr(path: Path) -> Labelled:
@@ -109,19 +132,13 @@ def read_zarr(path: Path) -> Labelled:
         for name, (dims, values, _) in arrays.items():
             if any(sizes.setdefault(dim, size) != size for dim, size in zip(dims, values.shape, strict=True)):
                 raise ValueError(f"{name} has another number of {', '.join(dims)} than other arrays")
-        return labelled_of(arrays, dict(group.attrs))
+        return Labelled.from_file(arrays, dict(group.attrs))
 
 
-def read_zarr_attributes(path: Path) -> dict[str, Any]:
-    """Return the attributes of a store; RoughmdrError if it cannot be read."""
+def read_zarr_outline(path: Path) -> tuple[dict[str, Any], dict[str, tuple[str, ...]]]:
+    """Return the attributes of a store, and the dimensions of each array; RoughmdrError if it cannot be read."""
     with _opened(path) as group:
-        return dict(group.attrs)
-
-
-def read_zarr_dimensions(path: Path) -> dict[str, tuple[str, ...]]:
-    """Return the dimensions of each array of a store; RoughmdrError if it cannot be read."""
-    with _opened(path) as group:
-        return {name: _dimensions(stored) for name, stored in group.arrays()}
+        return dict(group.attrs), {name: _dimensions(stored) for name, stored in group.arrays()}
 
 
 @contextmanager
@@ -160,7 +177,7 @@ def _read(stored: "zarr.Array[Any]", room: Room) -> Array:
     dims = _dimensions(stored)
     if stored.dtype == np.float64:
         values = room.empty(stored.shape)
-        for block in _blocks(stored.shape, stored.chunks):
+        for block in blocks(stored.shape, stored.chunks):
             values[block] = stored[block]
     else:
         values = texts_as_objects(np.asarray(stored[...]))

@@ -13,7 +13,7 @@ from scipy.special import digamma, gamma
 
 import roughmdr as rm
 from roughmdr.storage.labelled import Labelled
-from roughmdr.storage.netcdf_writing import write_netcdf
+from roughmdr.storage.netcdf_store import write_netcdf
 
 PIPELINES = Path(__file__).parents[2] / "pipelines"
 

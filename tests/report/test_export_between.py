@@ -70,7 +70,7 @@ def ratio(fine: xr.Dataset, quantity: str, branch: str) -> float | None:
         off = np.abs(np.interp(other[within], x, there.value) - value[within])
         largest = float(np.abs(there.value).max())
         over = off / np.maximum(np.abs(value[within]), RELATIVE_FROM * largest)
-        departure = 0.0 if asked.over_pressure else table.departure / law.pressure.max()
+        departure = 0.0 if asked.over_pressure else table.law.departure / law.pressure.max()
         assert off.max() / largest <= 1.2 * table.error + departure
         return float(over.max()) / (error + departure / RELATIVE_FROM)
     return None

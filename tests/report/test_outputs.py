@@ -24,7 +24,7 @@ from roughmdr.batch.resume.store import store_folder
 from roughmdr.cli import main
 from roughmdr.storage.files import destination
 from roughmdr.storage.labelled import Array, Labelled
-from roughmdr.storage.netcdf_writing import max_file_size, write_arrays
+from roughmdr.storage.netcdf_store import max_file_size, write_arrays
 from roughmdr.storage.result_file import read_result
 
 FEW = {**ASPERITIES, "count": 20}
@@ -346,7 +346,7 @@ import resource, sys
 from pathlib import Path
 from test_outputs import big
 from roughmdr.errors import RoughmdrError
-from roughmdr.storage.netcdf_writing import write_netcdf
+from roughmdr.storage.netcdf_store import write_netcdf
 write_netcdf(big(2), Path("small.nc"))
 data = big(int(sys.argv[1]))
 with open("/proc/self/statm") as sizes:

@@ -31,7 +31,7 @@ from roughmdr.batch.plan import make_plan
 from roughmdr.runner.backend import Backend
 from roughmdr.runner.run import execute
 from roughmdr.scene import read
-from roughmdr.storage import growing_store, zarr_store
+from roughmdr.storage import zarr_store
 from roughmdr.storage.result_file import read_result
 
 RUNS, STEPS = 48, 20_000
@@ -99,13 +99,13 @@ def test_it_is_file_by_file_the_store_that_is_written_at_once(
         sweep=sweep,
     )
     written: list[tuple[slice, ...]] = []
-    write = growing_store.GrowingStore.write
+    write = zarr_store.GrowingStore.write
 
-    def noted(self: growing_store.GrowingStore, block: tuple[slice, ...]) -> None:
+    def noted(self: zarr_store.GrowingStore, block: tuple[slice, ...]) -> None:
         write(self, block)
         written.append(block)
 
-    monkeypatch.setattr(growing_store.GrowingStore, "write", noted)
+    monkeypatch.setattr(zarr_store.GrowingStore, "write", noted)
     plan = make_plan(read(table))
     execute(plan, tmp_path / "at_once.zarr", Backend(runs_per_task=1000))
     assert not written
@@ -213,7 +213,7 @@ def test_statistics_and_an_error_asked_for_are_written_at_the_end(tmp_path: Path
     for more in ({"output": {"keep": "statistics"}}, {"accuracy": {"relative": 0.05, "method": "sampled"}}):
         folder = tmp_path / next(iter(more))
         write_scene(folder, scene(**few, **more))
-        slowly = "import roughmdr.storage.growing_store as store\nstore.GrowingStore.__init__ = None"
+        slowly = "import roughmdr.storage.zarr_store as store\nstore.GrowingStore.__init__ = None"
         with running(Batch(folder, "-o", "out.zarr", code=slowly)) as batch:
             assert batch.succeed() > 4
         assert read_result(folder / "out.zarr").integrity_fault() == ""

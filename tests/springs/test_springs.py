@@ -15,7 +15,7 @@ import roughmdr as rm
 from roughmdr.springs import Springs
 from roughmdr.springs.profile import FunctionProfile, mdr_transform
 from roughmdr.storage.labelled import Labelled
-from roughmdr.storage.netcdf_writing import write_netcdf
+from roughmdr.storage.netcdf_store import write_netcdf
 
 _TABLE = np.linspace(0.0, 3.1e-4, 12)
 # Shape, E* [Pa], w [J/m^2], from nanometres to metres; the order of the force without adhesion.

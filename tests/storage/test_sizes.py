@@ -7,7 +7,7 @@ import pytest
 
 from roughmdr.storage.labelled import Array, Labelled
 from roughmdr.storage.memory import _read_sizes, peak_memory
-from roughmdr.storage.netcdf_writing import max_file_size, write_netcdf
+from roughmdr.storage.netcdf_store import max_file_size, write_netcdf
 
 
 @pytest.mark.parametrize("count", [1, 5000])

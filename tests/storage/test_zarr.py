@@ -22,7 +22,7 @@ import roughmdr as rm
 from roughmdr.cli import main
 from roughmdr.result.view import ResultView
 from roughmdr.storage import files, room, zarr_store
-from roughmdr.storage.labelled import Array, Labelled
+from roughmdr.storage.labelled import Array, Labelled, blocks, chunks_of
 from roughmdr.storage.result_file import read_result
 
 SWEPT = scene(
@@ -257,16 +257,14 @@ def test_damage_is_told(tmp_path: Path) -> None:
 @settings(deadline=None)
 @given(st.lists(st.integers(1, 2000), max_size=4))
 def test_chunks_are_small_and_cover_all_once(shape: list[int]) -> None:
-    dims = tuple("abcd"[: len(shape)])
-    along = zarr_store._chunks(Array(dims, np.broadcast_to(0.0, shape), {}))
-    chunks = tuple(along[dim] for dim in dims)
+    chunks = chunks_of(tuple(shape), zarr_store._CHUNK_SIZE)
     assert np.prod(chunks, dtype=float) <= zarr_store._CHUNK_SIZE
     counts = [-(-size // chunk) for size, chunk in zip(shape, chunks, strict=True)]
     if np.prod(counts, dtype=float) < 1e4:
-        blocks = list(zarr_store._blocks(tuple(shape), chunks))
-        assert len(set(map(str, blocks))) == len(blocks) == np.prod(counts)
-        sizes = [[len(range(size)[each]) for size, each in zip(shape, block, strict=True)] for block in blocks]
-        assert sum(np.prod(each) for each in sizes) == np.prod(shape)
+        found = list(blocks(tuple(shape), chunks))
+        assert len(set(map(str, found))) == len(found) == np.prod(counts)
+        whole = np.broadcast_to(0.0, shape)
+        assert sum(whole[block].size for block in found) == whole.size
 
 
 @pytest.mark.large

@@ -15,7 +15,7 @@ from roughmdr.ensemble.maps.height_map import HeightMap
 from roughmdr.numerics.arguments import Floats
 from roughmdr.spectrum import SelfAffine
 from roughmdr.storage.labelled import Labelled
-from roughmdr.storage.netcdf_writing import write_netcdf
+from roughmdr.storage.netcdf_store import write_netcdf
 
 SIZE = 1e-3  # [m], side of the patch
 MODULUS = 1e9  # [Pa], E*

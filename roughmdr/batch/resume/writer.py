@@ -17,10 +17,9 @@ from roughmdr.batch.task_result import TaskResult
 from roughmdr.errors import StoreError
 from roughmdr.numerics.arguments import Ints
 from roughmdr.storage.files import ZARR_ENDING
-from roughmdr.storage.growing_store import GrowingStore
 from roughmdr.storage.labelled import Labelled
-from roughmdr.storage.netcdf_writing import write_netcdf
-from roughmdr.storage.zarr_store import write_zarr
+from roughmdr.storage.netcdf_store import write_netcdf
+from roughmdr.storage.zarr_store import GrowingStore, write_zarr
 from roughmdr.variables import FAILED
 
 _MAX_NAME = 255  # bytes of a file's name

@@ -50,11 +50,8 @@ def table_lines(
     if "nominal_area" in cell.variables:
         yield "nominal area", f"{cell.variables['nominal_area'].values.item() / length.size**2:.15g} {length.name}^2"
     datum, pressed = table.law.datum / length.size, "flat" if cell.flat else "undeformed body"
-    yield (
-        "datum",
-        f"overclosure is {datum:.15g} {length.name} minus the separation of the {pressed} "
-        "from the datum plane of heights",
-    )
+    minus = f"minus the separation of the {pressed} from the datum plane of heights"
+    yield "datum", f"overclosure is {datum:.15g} {length.name} {minus}"
     yield "points", f"{table.law.overclosure.size}, of {table.steps} steps"
     over = "the pressure" if quantity.over_pressure else "the overclosure"
     yield (
@@ -64,10 +61,7 @@ def table_lines(
         f"steps included: estimated from the steps, which holds in {100 * CONFIDENCE:g} % of cases",
     )
     if math.isfinite(table.statistical_error):
-        yield (
-            "statistical error",
-            f"of the mean up to {table.statistical_error:.2g} of the largest value",
-        )
+        yield "statistical error", f"of the mean up to {table.statistical_error:.2g} of the largest value"
     if cell.known("numerical_error").size:
         yield "numerical error", f"force within {cell.largest('numerical_error'):.2g} of the largest"
     if quantity.name == "pressure" and (joint := hyperbola(law.separation, law.pressure)):
@@ -80,8 +74,8 @@ def table_lines(
         )
     if quantity.whole:
         yield from whole_lines(cell, table.law, law, quantity, units)
-    if table.departure > 0.0:
-        departure = f"{table.departure / pressure.size:.3g} {pressure.name}"
+    if table.law.departure > 0.0:
+        departure = f"{table.law.departure / pressure.size:.3g} {pressure.name}"
         yield "departure", f"up to {departure} at steps that a load jumps over"
     yield from model_lines(cell)
     if quantity.name == "area":

@@ -26,27 +26,22 @@ class Quantity(NamedTuple):
 
     name: str
     sources: tuple[Source, ...]
-    over_pressure: bool
+    over_pressure: bool = False
     """Whether tables have it over the pressure, else over the overclosure."""
     whole: bool = False
     """Whether it is the whole law of a body at given separations, else the part per area that a load can follow."""
 
 
-_PRESSURE = Quantity("pressure", (Source("pressure", "Pa", False), Source("force", "Pa", True)), over_pressure=False)
+_PRESSURE = Quantity("pressure", (Source("pressure", "Pa", False), Source("force", "Pa", True)))
+_CONDUCTANCES = Source("thermal_conductance", "W/m2/K", True), Source("electrical_conductance", "S/m2", True)
 QUANTITIES = {
     quantity.name: quantity
     for quantity in (
         _PRESSURE,
-        Quantity(
-            "conductance",
-            (Source("thermal_conductance", "W/m2/K", True), Source("electrical_conductance", "S/m2", True)),
-            over_pressure=True,
-        ),
-        Quantity(
-            "area", (Source("contact_fraction", "1", False), Source("contact_area", "1", True)), over_pressure=False
-        ),
+        Quantity("conductance", _CONDUCTANCES, over_pressure=True),
+        Quantity("area", (Source("contact_fraction", "1", False), Source("contact_area", "1", True))),
         Quantity("tangential", (Source("tangential_stiffness", "Pa/m", True),), over_pressure=True),
-        Quantity("force", (Source("force", "N", False),), over_pressure=False, whole=True),
+        Quantity("force", (Source("force", "N", False),), whole=True),
     )
 }
 """Quantities of tables by their names."""
@@ -80,10 +75,8 @@ def law_of(cell: ResultView, quantity: Quantity, branch: str) -> Law:
         listed = ", ".join(f"{name} ({size})" for name, size in cell.sweep.items())
         raise StoreError(f"the result has {len(cell.cells)} cells, over {listed}: select one of each")
     if cell.control != SEPARATION.name:
-        raise StoreError(
-            f"the path of the result is over {cell.control}: a table needs the mean law over the separation; run "
-            "the scene with path.separation"
-        )
+        needed = "a table needs the mean law over the separation; run the scene with path.separation"
+        raise StoreError(f"the path of the result is over {cell.control}: {needed}")
     separation = cell.coordinates[SEPARATION.name].values.reshape(-1)
     steps = _steps(cell.legs, separation, branch)
     value, error, source = _mean(cell, quantity, steps)

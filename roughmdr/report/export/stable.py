@@ -58,7 +58,8 @@ def stable_part(law: Law, branch: str, *, with_tension: bool, negligible: float)
             f"the {branch} begins at {format_quantity(float(pressure[0]), 'Pa')}, in contact: a table begins where "
             'contact does, as with path.separation.start = "clear"'
         )
-    compressed = _records(pressure, last + 1, loading=loading)
+    compressed = np.arange(last + 1, pressure.size)
+    compressed = _passed(-pressure, compressed, 0.0) if loading else _passed(pressure, compressed[::-1], np.inf)[::-1]
     between = float(pressure[last] / (pressure[last] - pressure[last + 1])) if last >= 0 else 0.0
 
     def with_zero(values: Floats) -> Floats:
@@ -69,8 +70,7 @@ def stable_part(law: Law, branch: str, *, with_tension: bool, negligible: float)
     tense: Ints = np.zeros(0, dtype=np.int64)
     if with_tension and not loading and last >= 0:
         lowest = int(pressure.argmin())
-        outwards = np.arange(last, lowest - 1, -1)
-        tense = outwards[_below_all_before(pressure[outwards], 0.0)][::-1]
+        tense = _passed(pressure, np.arange(last, lowest - 1, -1), 0.0)[::-1]
     separation = with_zero(law.separation)
     datum = float(separation[tense.size])
     stable = with_zero(pressure)
@@ -91,19 +91,10 @@ def stable_part(law: Law, branch: str, *, with_tension: bool, negligible: float)
     )
 
 
-def _records(pressure: Floats, first: int, *, loading: bool) -> Ints:
-    """Return the steps from ``first`` on that a growing load, or a falling one, passes."""
-    steps = np.arange(first, pressure.size)
-    if loading:
-        return steps[_below_all_before(-pressure[steps], 0.0)]
-    inwards = steps[::-1]
-    return inwards[_below_all_before(pressure[inwards], np.inf)][::-1]
-
-
-def _below_all_before(values: Floats, start: float) -> Ints:
-    """Return where values are below ``start`` and all values before."""
-    lowest = np.minimum.accumulate(np.concatenate([[start], values]))
-    return np.flatnonzero(values < lowest[:-1])
+def _passed(pressure: Floats, steps: Ints, start: float) -> Ints:
+    """Return the steps, in their order, that a falling load passes: with a pressure below ``start`` and all before."""
+    lowest = np.minimum.accumulate(np.append(start, pressure[steps]))
+    return steps[pressure[steps] < lowest[:-1]]
 
 
 def _rule(lowest: float, *, loading: bool) -> str:

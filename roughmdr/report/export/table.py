@@ -35,8 +35,6 @@ class Table(NamedTuple):
     """Largest error over the value itself, where that is in the upper decade."""
     statistical_error: float
     """Largest standard error over the largest value; NaN of a single realisation."""
-    departure: float
-    """Largest difference of the pressure to that of steps left out as a load jumps over them [Pa]."""
     warnings: tuple[str, ...]
     """Parts of the law that the table leaves out, in words."""
 
@@ -92,7 +90,6 @@ def table_of(
         float(off.max()) / largest,
         float((off[upper] / np.abs(y[upper])).max()),
         float(part.standard_error.max()) / largest,
-        part.departure,
         tuple(_warnings(part, branch, float(law.pressure.max()) * error)),
     )
 
