@@ -8,12 +8,13 @@ from itertools import product
 import numpy as np
 import xarray as xr
 
-from roughmdr.ensemble.maps.summits import find_summits
 from studies.comparison import cases_of, in_cases, panels, percent, rms
 from studies.hills.convergence import QUICK_TRIALS, TRIALS, draw_convergence, measure_convergence, report_convergence
 from studies.hills.grids import measure_grids, report_grids
 from studies.hills.maps import (
     ANISOTROPIC,
+    FILES,
+    FOLDER,
     FRACTIONS,
     ISOTROPIC,
     PAIRS,
@@ -23,14 +24,13 @@ from studies.hills.maps import (
     STIFFNESS_EACH,
     MapCase,
     Pressed,
-    by_asperities,
     by_elements,
+    by_elements_and_asperities,
     by_persson,
-    hills_of,
+    press_files,
     separations,
     square,
 )
-from studies.hills.measured_maps import FILES, FOLDER, press_files
 from studies.study import Axes, Figure, Study, named, table, without_limits
 
 COARSE = (2, 3, 4)
@@ -49,10 +49,7 @@ def press(case: MapCase) -> list[Pressed]:
     separation, surface = separations(case), square(case.height(POINTS))
     persson = [by_persson(surface, separation, gamma) for gamma in PERSSON.values() if case.anisotropy == 1.0]
     return [
-        by_elements(surface, separation),
-        by_asperities(surface, separation, find_summits, None),
-        by_asperities(surface, separation, find_summits, PAIRS),
-        by_asperities(surface, separation, hills_of, PAIRS),
+        *by_elements_and_asperities(surface, separation, PAIRS),
         *(by_elements(square(case.height(points)), separation) for points in COARSE),
         *persson,
     ]
