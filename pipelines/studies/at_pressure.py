@@ -16,8 +16,7 @@ from studies.comparison import HELD, INTERACTIONS, draw_stated, groups_of, held,
 from studies.hills.maps import MapCase
 from studies.study import Figure, Study, in_two_processes, table, without_limits
 from studies.surfaces import Surface, surface_of
-from studies.versus_adhesive_bem import by_elements
-from studies.versus_adhesive_bem.cases import FLATTER, PRESSED, STATED, Case as Adhering, flat_law
+from studies.versus_adhesive_bem import FLATTER, PRESSED, STATED, Case as Adhering, by_elements, flat_law
 from studies.versus_bem.ensembles import Case, separations as of_asperities
 
 SEED = 2027  # seed of the surfaces; those of seed 7 have set the constants
