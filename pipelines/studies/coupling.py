@@ -7,7 +7,7 @@ from unittest.mock import patch
 
 import numpy as np
 import xarray as xr
-from benchmarks.process import in_new_process
+from benchmarks.child import in_new_process
 from oracles.boundary_elements import HeightMap
 
 from roughmdr.interaction import solve

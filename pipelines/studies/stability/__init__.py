@@ -16,7 +16,7 @@ from typing import Any, Literal
 
 import numpy as np
 import xarray as xr
-from benchmarks.process import in_new_process
+from benchmarks.child import in_new_process
 
 import roughmdr as rm
 from roughmdr.asperity.contact import Contact
