@@ -1,7 +1,7 @@
-"""Gaussian self-affine maps, the same on grids of any fineness, measured ones, and one map pressed by one method: over E*.
+"""Gaussian self-affine maps, the same on grids of any fineness, and measured ones, pressed by one method: over E*.
 
-Measured maps do not repeat: squares from their middle are held against boundary elements of a free half-space. The files
-are no part of the project; the environment variable ``ROUGHMDR_SURFACES`` names a folder that holds them.
+Of measured maps, which do not repeat, squares from the middle stand beside boundary elements of a free half-space. The
+files are no part of the project; the environment variable ``ROUGHMDR_SURFACES`` names a folder that holds them.
 """
 
 import os
