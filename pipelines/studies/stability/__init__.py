@@ -25,9 +25,8 @@ from roughmdr.kernels.closed import jkr_power
 from roughmdr.kernels.dugdale import equilibrium
 from roughmdr.numerics.arguments import Floats
 from studies.comparison import groups_of
-from studies.stability.cases import AXES, Case, design
 from studies.stability.crowding import crowded, crowds
-from studies.stability.judge import MODELS, OUTCOMES, REFUSED, WRONG, Verdict, verdicts
+from studies.stability.judge import AXES, MODELS, OUTCOMES, REFUSED, WRONG, Case, Verdict, design, verdicts
 from studies.stability.metamorphic import KINDS, QUICK as QUICK_KINDS, checks
 from studies.study import Axes, Figure, Study, blank, in_two_processes, named, table
 
