@@ -68,7 +68,7 @@ def law_at(ensemble: xr.Dataset, side: float, interaction: Any, control: str, va
     asked: dict[str, Any] = {"interaction": interaction, "variables": ("force", "conductance_radius")}
     for i in np.flatnonzero(np.isfinite(values)):
         with contextlib.suppress(rm.RoughmdrError):
-            law = rm.load_separation(ensemble, effective_modulus=1.0, **asked, **{control: [float(values[i]) * scale]})
+            law = rm.load_separation(ensemble, effective_modulus=1.0, **asked | {control: [float(values[i]) * scale]})
             found[:, i] = law["conductance_radius"].item() / side, law["conductance_error"].item()
     return found
 
