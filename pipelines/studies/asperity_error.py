@@ -13,8 +13,9 @@ from oracles.multiprecision import Number, mp
 
 import roughmdr as rm
 from roughmdr.aggregate import loop, totals
-from roughmdr.asperity.contact import Contact
+from roughmdr.asperity.contact import FIXED_GRIPS, Contact, prepared
 from roughmdr.kernels.adhesion import Adhesion
+from roughmdr.kernels.choose import choose
 from roughmdr.kernels.interface import Columns
 from roughmdr.kernels.profile.layout import COUNT, FOOT, TOP
 from roughmdr.loading.staircase import staircase
@@ -120,7 +121,13 @@ class _Subject:
     """A shape on its half-space, as the kernels have it and exactly."""
 
     def __init__(self, shape: Shape, effective_modulus: float, work: float) -> None:
-        self.contact = Contact.rounded(shape, effective_modulus, Adhesion(work))
+        adhesion, (width, rise, numbers) = Adhesion(work), shape.nondimensional()
+        kernels = choose(shape.name, adhesion, np.array([numbers]))
+        params = prepared(kernels, shape, effective_modulus, adhesion, FIXED_GRIPS)
+        if kernels.iterative and params[COUNT] == 0.0:
+            raise rm.OutOfRange("no float holds the fold")
+        scales = kernels.scales(effective_modulus, work, width, rise, params)
+        self.contact = Contact(kernels, shape, effective_modulus, adhesion, params, *scales)
         kind = ExactPunch if isinstance(shape, rm.FlatPunch) else ExactContact
         self.exact = kind(shape, effective_modulus, work)  # type: ignore[arg-type]
         self.branches = self._branches() if work else []
