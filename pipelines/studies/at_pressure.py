@@ -81,10 +81,8 @@ def draw_case(seed: int, number: int, points: int) -> tuple[Case | MapCase, bool
     """Return a surface at random, and whether it repeats: of three one is a map, of these every second one is cut."""
     chance = np.random.default_rng([seed, number])
     if number % 3 == 2:
-        case = MapCase(
-            float(chance.choice([0.3, 0.5, 0.8])), int(chance.choice([8, 12, 16, 24])), int(chance.integers(1000))
-        )
-        return case, bool(number % 2)
+        hurst, bandwidth = float(chance.choice([0.3, 0.5, 0.8])), int(chance.choice([8, 12, 16, 24]))
+        return MapCase(hurst, bandwidth, int(chance.integers(1000))), bool(number % 2)
     placement, shape = str(chance.choice(_PLACEMENTS)), str(chance.choice(_SHAPES))
     count = 64 if placement == "hexagonal" else round(math.exp(chance.uniform(math.log(25), math.log(300))))
     if placement == "square":
