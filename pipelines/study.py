@@ -42,16 +42,10 @@ class Done(NamedTuple):
         reduced = [line.removeprefix(REDUCED) for line in self.text.splitlines() if line.startswith(REDUCED)]
         return [self.name, f"{self.seconds:.0f}", "".join(reduced) or ("all" if self.text else "failed")]
 
-    @property
-    def part(self) -> str:
-        """Its part of the report."""
-        return self.text or f"## {self.name}\n\nfailed\n"
-
 
 def study(name: str) -> Study:
     """Return a study by its name."""
-    found = import_module(MODULES[name]).STUDY
-    assert isinstance(found, Study)
+    found: Study = import_module(MODULES[name]).STUDY
     return found
 
 
@@ -69,7 +63,7 @@ def report(done: list[Done], quick: bool) -> str:
     form = "in reduced forms; `make studies-full` carries out all of each" if quick else "in full"
     head = f"# Results of the studies\n\n{sum(one.seconds for one in done):.0f} s, {form}.\n"
     times = f"{table(['study', 's', 'carried out'], [one.row for one in done])}\n"
-    return "\n".join([head, times, *(one.part for one in done)])
+    return "\n".join([head, times, *(one.text or f"## {one.name}\n\nfailed\n" for one in done)])
 
 
 def run_all(output: Path, quick: bool) -> None:

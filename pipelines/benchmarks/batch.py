@@ -14,7 +14,6 @@ from studies.comparison import in_cases, panels
 from studies.study import Figure, Study, named, table, timed
 
 from benchmarks import child
-from benchmarks.process import in_new_process
 from benchmarks.tasks import by_scheduler, by_workers
 from roughmdr.batch.moments import KnownMoments, Moments
 from roughmdr.batch.plan import make_plan
@@ -44,7 +43,7 @@ _ASPERITY = {
 
 
 def _medians(function: Callable[[int], dict[str, float]], count: int, repeats: int) -> dict[str, float]:
-    found = [in_new_process(function, count) for _ in range(repeats)]
+    found = [child.in_new_process(function, count) for _ in range(repeats)]
     return {name: median(each[name] for each in found) for name in found[0]}
 
 
@@ -62,7 +61,7 @@ def by_cell(cells: int, repeats: int) -> xr.Dataset:
 
 def by_realizations(counts: list[int]) -> xr.Dataset:
     """Measure memory and time by the number of realisations, where statistics are kept."""
-    found = [in_new_process(child.statistics, count) for count in counts]
+    found = [child.in_new_process(child.statistics, count) for count in counts]
     return xr.Dataset(in_cases(_STATISTICS, found, "realizations"), {"realizations": counts})
 
 

@@ -3,6 +3,10 @@
 It imports no more than a run does, since its memory is what is measured.
 """
 
+import json
+import os
+import subprocess
+import sys
 import tempfile
 import time
 from collections.abc import Callable
@@ -19,7 +23,25 @@ from roughmdr.scene import Scene, read
 from roughmdr.storage.memory import peak_memory
 
 WORKS = 100  # values of the first swept key; the second one has as many as make the number of cells
+_CODE = "import json, sys; from {0} import {1}; print(); print(json.dumps({1}(*json.loads(sys.argv[1]))))"
 HEIGHT = {"distribution": "normal", "std": "1 um"}
+
+
+def in_new_process(function: Callable[..., Any], *arguments: Any, **environment: str) -> Any:
+    """Call a function of a module in a process that loads nothing else; arguments and result pass as JSON."""
+    code = _CODE.format(function.__module__, function.__name__)
+    command, settings = [sys.executable, "-c", code, json.dumps(arguments)], os.environ | environment
+    folder = Path(__file__).parents[1]
+    done = subprocess.run(command, capture_output=True, text=True, check=False, cwd=folder, env=settings)
+    if done.returncode:
+        raise RuntimeError(done.stderr)
+    return json.loads(done.stdout.splitlines()[-1])
+
+
+def peak_memory() -> int:
+    """Return the bytes that this process has taken at most so far. Needs /proc."""
+    status = Path("/proc/self/status").read_text().splitlines()
+    return next(1024 * int(line.split()[1]) for line in status if line.startswith("VmHWM"))
 
 
 def small_scene(*, count: int = 10, steps: int = 20, unload: bool = True, **sections: dict[str, Any]) -> Scene:

@@ -13,8 +13,7 @@ from studies.study import Study, named
 
 import roughmdr
 from benchmarks.batch import tables
-from benchmarks.child import run_command
-from benchmarks.process import in_new_process
+from benchmarks.child import in_new_process, run_command
 from roughmdr.batch.estimate import estimate
 from roughmdr.batch.plan import make_plan
 from roughmdr.scene import read

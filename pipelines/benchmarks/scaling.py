@@ -16,8 +16,7 @@ from studies.study import Study, named, timed
 
 import roughmdr as rm
 from benchmarks.batch import tables
-from benchmarks.child import HEIGHT, load_separation
-from benchmarks.process import in_new_process
+from benchmarks.child import HEIGHT, in_new_process, load_separation
 from roughmdr.aggregate import loop, totals
 from roughmdr.ensemble import Ensemble
 from roughmdr.kernels.adhesion import Adhesion

@@ -111,13 +111,9 @@ def summits(count: int, grids: tuple[int, ...], drawn: int) -> xr.Dataset:
         )  # fmt: skip
     coords = {
         "statistic": list(STATISTICS),
-        "unit": ("statistic", [unit for unit, _ in STATISTICS.values()], {"long_name": "unit of a statistic"}),
         "points_per_wave": ("points_per_wave", list(grids), named("points of the grid in a shortest wave")),
     }
-    moments = distribution.moments
-    number = sum(one.height.size for one in found)
-    attrs = {"maps": count, "summits": number, **moments._asdict(), "alpha": moments.alpha}
-    return xr.Dataset(columns, coords, attrs)
+    return xr.Dataset(columns, coords, {"maps": count, "summits": sum(one.height.size for one in found)})
 
 
 def measure(quick: bool) -> xr.Dataset:

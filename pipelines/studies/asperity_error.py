@@ -3,6 +3,7 @@
 import contextlib
 import math
 from collections.abc import Callable
+from functools import partial
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -12,6 +13,7 @@ from oracles.multiprecision import Number, mp
 
 import roughmdr as rm
 from roughmdr.aggregate import loop, totals
+from roughmdr.asperity.contact import FIXED_GRIPS, Contact, prepared
 from roughmdr.kernels.adhesion import Adhesion
 from roughmdr.kernels.choose import choose
 from roughmdr.kernels.interface import Columns
@@ -80,21 +82,15 @@ def _capped(rng: Rng) -> Shape:
     return rm.CappedParaboloid(radius, radius * decades(rng, 0.0, 4.0), _length(rng))
 
 
-DRAW: dict[str, Callable[[Rng], Shape]] = {
-    "paraboloid": lambda rng: rm.Paraboloid(_length(rng)),
-    "cone": lambda rng: rm.Cone(_slope(rng)),
-    "power_law": lambda rng: rm.PowerLaw(_exponent(rng), width=_length(rng), rise=_length(rng)),
-    "flat_punch": lambda rng: rm.FlatPunch(_length(rng)),
-    "sphere": lambda rng: rm.Sphere(_length(rng)),
-    "truncated_cone": lambda rng: rm.TruncatedCone(_slope(rng), _length(rng)),
-    "truncated_paraboloid": lambda rng: rm.TruncatedParaboloid(_length(rng), _length(rng)),
-    "rounded_cone": lambda rng: rm.RoundedCone(_slope(rng), _length(rng)),
-    "capped_paraboloid": _capped,
-    "rounded_punch": lambda rng: rm.RoundedPunch(_length(rng), _length(rng)),
-    "power_series": _series,
-    "tabulated": _table,
-    "mdr_table": _mdr_table,
-}
+def _plain(shape: type[Shape], rng: Rng) -> Shape:
+    """Return a shape of lengths, slopes and exponents of any size."""
+    others = {"slope": _slope, "exponent": _exponent}
+    return shape(**{name: others.get(name, _length)(rng) for name in shape.parameter_sets[-1]})
+
+
+DRAW: dict[str, Callable[[Rng], Shape]] = {name: partial(_plain, shape) for name, shape in SHAPES.items()} | {
+    "capped_paraboloid": _capped, "power_series": _series, "tabulated": _table, "mdr_table": _mdr_table
+}  # fmt: skip
 
 
 class ForceError(NamedTuple):
@@ -125,26 +121,23 @@ class _Subject:
     """A shape on its half-space, as the kernels have it and exactly."""
 
     def __init__(self, shape: Shape, effective_modulus: float, work: float) -> None:
-        width, rise, params = shape.nondimensional()
-        self.shape, self.effective_modulus, self.adhesion = shape, effective_modulus, Adhesion(work)
-        self.columns = Columns(np.array([width]), np.array([rise]), np.asarray(params, dtype=np.float64)[None])
-        self.kernels = choose(shape.name, self.adhesion, self.columns.params)
-        material = self.kernels.material(effective_modulus, self.adhesion)
-        prepared = self.kernels.prepare(material, self.columns, 0, 1, 0.0, math.inf)
-        self.params = self.kernels.params_of(prepared, 0)
-        self.solvable = not (self.kernels.iterative and self.params[COUNT] == 0.0)
-        if self.solvable:
-            (self.depth, _), self.radius, *_ = self.kernels.scales(effective_modulus, work, width, rise, self.params)
-            kind = ExactPunch if isinstance(shape, rm.FlatPunch) else ExactContact
-            self.exact = kind(shape, effective_modulus, work)  # type: ignore[arg-type]
-            self.branches = self._branches() if work else []
+        adhesion, (width, rise, numbers) = Adhesion(work), shape.nondimensional()
+        kernels = choose(shape.name, adhesion, np.array([numbers]))
+        params = prepared(kernels, shape, effective_modulus, adhesion, FIXED_GRIPS)
+        if kernels.iterative and params[COUNT] == 0.0:
+            raise rm.OutOfRange("no float holds the fold")
+        scales = kernels.scales(effective_modulus, work, width, rise, params)
+        self.contact = Contact(kernels, shape, effective_modulus, adhesion, params, *scales)
+        kind = ExactPunch if isinstance(shape, rm.FlatPunch) else ExactContact
+        self.exact = kind(shape, effective_modulus, work)  # type: ignore[arg-type]
+        self.branches = self._branches() if work else []
 
     def _branches(self) -> list[Branch]:
-        indentation = self.exact.indentation
-        if not self.kernels.iterative:
+        indentation, params = self.exact.indentation, self.contact.params
+        if not self.contact.kernels.iterative:
             return [Branch(self.exact.fold(), mp.inf, indentation(self.exact.fold()), mp.inf)]
-        count = int(self.params[COUNT])
-        feet, tops = ([mp.mpf(float(t)) for t in self.params[start : start + count]] for start in (FOOT, TOP))
+        count = int(params[COUNT])
+        feet, tops = ([mp.mpf(float(t)) for t in params[start : start + count]] for start in (FOOT, TOP))
         return [Branch(foot, top, indentation(foot), indentation(top) if top < mp.inf else mp.inf)
                 for foot, top in zip(feet, tops, strict=True)]  # fmt: skip
 
@@ -156,7 +149,8 @@ class _Subject:
     def random_indentation(self, rng: Rng) -> float:
         """Return one at 1e-12 to 1e3 depths from the end of a branch; without adhesion at a t of 1e-4 to 1e2."""
         if not self.branches:
-            return float(self.depth * self.kernels.reduced_control(decades(rng, -4.0, 2.0), self.params))
+            contact = self.contact
+            return float(contact.depth[0] * contact.kernels.reduced_control(decades(rng, -4.0, 2.0), contact.params))
         depth, branch = self.fold_depth, self.branches[int(rng.integers(len(self.branches)))]
         distance = depth * decades(rng, math.log10(NEAREST), -3.0 if rng.random() < 0.5 else 3.0)
         if branch.highest < mp.inf and rng.random() < 0.5:
@@ -166,12 +160,12 @@ class _Subject:
     def force_error(self, height: float, path: list[float]) -> ForceError | None:
         """Compare the sum over the asperity with the exact force; None where it detaches, or is too near to that."""
         h, asked = np.array(path), {totals.FORCE, totals.ERROR}
-        modulus = self.effective_modulus
+        kernels, shape, modulus, adhesion, _, (depth, _), *_ = self.contact
+        columns = Columns(*(np.asarray(part, dtype=np.float64)[None] for part in shape.nondimensional()))
         total, _, _ = loop.sum_over_asperities(
-            self.kernels, np.array([height]), self.columns, modulus, self.adhesion, h, staircase(h), asked
+            kernels, np.array([height]), columns, modulus, adhesion, h, staircase(h), asked
         )
-        offset = self.depth if self.branches else 0.0
-        x = [((height - each) + offset) / self.depth for each in path]
+        x = [((height - each) + (depth if self.branches else 0.0)) / depth for each in path]
         number = self._branch_at_end(x)
         indentation, distance = mp.mpf(height) - mp.mpf(path[-1]), math.inf
         low, high = mp.mpf(0), mp.mpf(10) ** 400
@@ -188,28 +182,27 @@ class _Subject:
             return None
         t = self.exact.state(indentation, begin, low, high)
         if t is None:
-            raise ArithmeticError(f"no equilibrium of {self.shape} at {indentation}")
+            raise ArithmeticError(f"no equilibrium of {shape} at {indentation}")
         force = self.exact.force(t)
         if not _MIN_FORCE < abs(force) < 1 / _MIN_FORCE:  # beyond, floats lose digits
             return None
         error, stated = abs(mp.mpf(float(total[totals.FORCE, -1])) - force), float(total[totals.ERROR, -1])
-        asperity = self.shape, self.effective_modulus, self.adhesion.work, height, path
-        return ForceError(*asperity, float(error), stated, float(force), distance)
+        return ForceError(shape, modulus, adhesion.work, height, path, float(error), stated, float(force), distance)
 
     def _branch_at_end(self, x: list[float]) -> int:
         """Return the number of the branch at the end of a path of reduced controls, from 1; 0 out of contact."""
-        if not self.kernels.branched:
+        if not self.contact.kernels.branched:
             return 1
         number = 0.0
         for each in x:
-            number = self.kernels.branch(max(each, 0.0), number, True, self.params)
+            number = self.contact.kernels.branch(max(each, 0.0), number, True, self.contact.params)
         return int(number)
 
     def _state_found(self, x: float, number: float) -> float:
         """Return the state that the kernels find, where the exact search begins."""
-        kernels, params = self.kernels, self.params
+        kernels, params = self.contact.kernels, self.contact.params
         state = kernels.state_on_branch(x, number, params) if kernels.branched else kernels.state(x, params)
-        return state if kernels.iterative else self.radius * kernels.radius(state, params)
+        return state if kernels.iterative else self.contact.radius * kernels.radius(state, params)
 
 
 def random_error(kind: str, adhesive: bool, seed: int) -> ForceError:
@@ -226,15 +219,13 @@ def random_error(kind: str, adhesive: bool, seed: int) -> ForceError:
 def _draw(rng: Rng, kind: str, adhesive: bool) -> ForceError | None:
     shape = DRAW[kind](rng)
     subject = _Subject(shape, decades(rng, 3.0, 13.0), decades(rng, -9.0, 1.0) if adhesive else 0.0)
-    if not subject.solvable:
-        return None
     indentation = subject.random_indentation(rng)
     if not math.isfinite(indentation) or indentation == 0.0 or (indentation < 0.0 and not adhesive):
         return None
     height = 0.0
     if rng.random() >= 0.5:
         height = float(rng.normal()) * abs(indentation) * decades(rng, 0.0, 3.0)
-    before = [height, height - _PRESSED * subject.depth] if rng.random() < 0.3 else [height]
+    before = [height, height - _PRESSED * subject.contact.depth[0]] if rng.random() < 0.3 else [height]
     return subject.force_error(height, [*(before if adhesive else []), height - indentation])
 
 

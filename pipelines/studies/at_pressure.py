@@ -5,20 +5,21 @@ boundary elements.
 """
 
 import math
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import xarray as xr
 
 import roughmdr as rm
+from roughmdr.elements.half_space import BoundaryElements
+from roughmdr.ensemble.maps.height_map import HeightMap
+from roughmdr.ensemble.maps.summits import find_summits
 from roughmdr.numerics.arguments import Floats
 from studies.comparison import HELD, INTERACTIONS, draw_stated, groups_of, held, law_of, of_rows, panels, percent
-from studies.hills.maps import MapCase
+from studies.hills.maps import SIDE, MapCase, hills_of, where_reached
 from studies.study import Figure, Study, in_two_processes, table, without_limits
-from studies.surfaces import Surface, surface_of
-from studies.versus_adhesive_bem import by_elements
-from studies.versus_adhesive_bem.cases import FLATTER, PRESSED, STATED, Case as Adhering, flat_law
-from studies.versus_bem.ensembles import Case, separations as of_asperities
+from studies.versus_adhesive_bem import FLATTER, PRESSED, STATED, Case as Adhering, by_elements, flat_law
+from studies.versus_bem.ensembles import SIZE, Case, separations as of_asperities
 
 SEED = 2027  # seed of the surfaces; those of seed 7 have set the constants
 FRACTIONS = np.array([0.003, 0.006, 0.012, 0.025, 0.05, 0.1, 0.15])
@@ -30,6 +31,7 @@ _POINTS = {False: 384, True: 96}
 _CONTROLS = ("separation", "pressure", "contact_fraction")
 QUANTITIES = ("pressure", "contact_fraction", "stiffness", "conductance_radius", "contact_radius_sum", "separation")
 ASKED = [(quantity, control) for control in _CONTROLS for quantity in QUANTITIES if quantity != control]
+_COARSER = 4  # points of the grid for one of that on which separations are looked for
 _LEAST_POINTS = 3.0  # least points of the grid a mean contact radius
 _STEPS = 30  # steps of the law from one solution of boundary elements to the next
 _SHAPES = ("paraboloid", "paraboloid", "lognormal", "cone", "quartic")
@@ -41,14 +43,46 @@ WORDS = {
 }
 
 
+class Surface(NamedTuple):
+    """A surface, and the asperities that stand for it by their group."""
+
+    ensembles: dict[str, xr.Dataset]
+    height: Floats  # [side], on the grid of boundary elements
+    side: float  # [m]
+    periodic: bool
+
+    def elements(self, coarser: int = 1) -> BoundaryElements:
+        """Return boundary elements of unit side, on one of ``coarser`` points along a side."""
+        return BoundaryElements(self.height[::coarser, ::coarser], np.ones(2), periodic=self.periodic)
+
+    def separations(self, fractions: Floats, searched: int, left: float | None = None) -> Floats:
+        """Return the separations [side] of contact fractions by coarse elements, of lower ones ``left``; NaN beyond."""
+        coarse = self.elements(_COARSER)
+        top, mean = float(coarse.height.max()), float(coarse.height.mean())
+        tried = top - (top - mean) * np.linspace(0.03, 0.97, searched) ** 1.5
+        return where_reached(coarse, tried, fractions, left=left, right=np.nan)
+
+
+def surface_of(case: Case | MapCase, periodic: bool = True) -> Surface:
+    """Return the surface of a case; not ``periodic``, 0.7 of the side is cut out of a map."""
+    if isinstance(case, Case):
+        ensemble, height, _ = case.build()
+        return Surface({"asperities": ensemble}, height / SIZE, SIZE, True)
+    height, side = case.height(16 if case.bandwidth <= 16 else 12), SIDE
+    if not periodic:
+        kept = int(0.7 * height.shape[0]) // 4 * 4
+        height, side = height[:kept, :kept], SIDE * kept / height.shape[0]
+    surface = HeightMap(height, side / height.shape[0], side / height.shape[1], periodic)
+    found = {"summits": find_summits(surface), "hills": hills_of(surface)}
+    return Surface({name: each.labelled().to_xarray() for name, each in found.items()}, height / side, side, periodic)
+
+
 def draw_case(seed: int, number: int, points: int) -> tuple[Case | MapCase, bool]:
     """Return a surface at random, and whether it repeats: of three one is a map, of these every second one is cut."""
     chance = np.random.default_rng([seed, number])
     if number % 3 == 2:
-        case = MapCase(
-            float(chance.choice([0.3, 0.5, 0.8])), int(chance.choice([8, 12, 16, 24])), int(chance.integers(1000))
-        )
-        return case, bool(number % 2)
+        hurst, bandwidth = float(chance.choice([0.3, 0.5, 0.8])), int(chance.choice([8, 12, 16, 24]))
+        return MapCase(hurst, bandwidth, int(chance.integers(1000))), bool(number % 2)
     placement, shape = str(chance.choice(_PLACEMENTS)), str(chance.choice(_SHAPES))
     count = 64 if placement == "hexagonal" else round(math.exp(chance.uniform(math.log(25), math.log(300))))
     if placement == "square":

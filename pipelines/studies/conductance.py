@@ -13,19 +13,10 @@ import xarray as xr
 import roughmdr as rm
 from roughmdr.elements.half_space import BoundaryElements
 from roughmdr.numerics.arguments import Floats
-from studies.comparison import (
-    INTERACTIONS,
-    cases_of,
-    draw_errors,
-    in_cases,
-    law_of,
-    median_and_largest,
-    panels,
-    percent,
-)
+from studies.at_pressure import surface_of
+from studies.comparison import INTERACTIONS, cases_of, draw_errors, in_cases, median_and_largest, panels, percent
 from studies.hills.maps import MapCase
 from studies.study import Figure, Study, in_two_processes, table, without_limits
-from studies.surfaces import surface_of
 from studies.versus_bem.ensembles import Case
 
 FRACTIONS = np.array([0.001, 0.003, 0.01, 0.03, 0.06, 0.1])  # contact fractions by boundary elements, about
@@ -74,18 +65,18 @@ def press(elements: BoundaryElements, separation: float) -> tuple[float, float, 
 def law_at(ensemble: xr.Dataset, side: float, interaction: Any, control: str, values: Floats) -> Floats:
     """Return the conductance radius over the side and its stated error, at given separations or forces; NaN of none."""
     found, scale = np.full((2, values.size), np.nan), {"separation": side, "force": side**2}[control]
+    asked: dict[str, Any] = {"interaction": interaction, "variables": ("force", "conductance_radius")}
     for i in np.flatnonzero(np.isfinite(values)):
-        given: dict[str, Any] = {control: [float(values[i]) * scale], "interaction": interaction}
         with contextlib.suppress(rm.RoughmdrError):
-            law = law_of(ensemble, effective_modulus=1.0, variables=("force", "conductance_radius"), **given)
+            law = rm.load_separation(ensemble, effective_modulus=1.0, **asked | {control: [float(values[i]) * scale]})
             found[:, i] = law["conductance_radius"].item() / side, law["conductance_error"].item()
     return found
 
 
+@without_limits()
 def compare(case: Case | MapCase) -> list[dict[str, Any]]:
     """Return the numbers of the asperities of a case; hills and summits are of one map."""
-    with without_limits():
-        surface = surface_of(case)
+    surface = surface_of(case)
     along = surface.separations(FRACTIONS, _SEARCHED)
     grids = [surface.elements(coarser) for coarser in (1, 2)]
     fine, coarse = np.array([[press(grid, h) for h in along.tolist()] for grid in grids])

@@ -7,8 +7,8 @@ import numpy as np
 import xarray as xr
 
 import roughmdr as rm
-from studies.comparison import PAIRS, each_of, in_cases, law_of, panels
-from studies.study import Axes, Figure, Study, named, table
+from studies.comparison import PAIRS, each_of, law_of, of_rows, panels
+from studies.study import Axes, Figure, Study, table
 
 MODULUS = 2e6  # [Pa]
 WORK = 0.05  # [J/m2]
@@ -88,22 +88,14 @@ def surfaces(quick: bool) -> list[Surface]:
 
 def measure(quick: bool) -> xr.Dataset:
     """Return the numbers of the cycles of all surfaces, with each model and for each realisation."""
-    asked, found = surfaces(quick), []
-    for surface in asked:
+    rows = []
+    for surface in surfaces(quick):
         drawn = [surface.generate(r) for r in range(REALIZATIONS[quick])]
         cycles = [[cycle(each, interaction, STEPS) for each in drawn] for interaction in MODELS.values()]
-        found.append({name: [[each[name] for each in row] for row in cycles] for name in _CYCLE})
-    spread, asperities, distance = (list(each) for each in zip(*asked, strict=True))
-    return xr.Dataset(
-        in_cases(_CYCLE, found, "surface", "model", "realization"),
-        {
-            "model": list(MODELS),
-            "spread": ("surface", spread, named("standard deviation of the heights over the pull-off length")),
-            "asperities": ("surface", asperities, named("number of asperities")),
-            "distance": ("surface", distance, named("mean distance over the jump-on radius")),
-        },
-        dict(zip(("usual_asperities", "usual_distance"), USUAL[quick], strict=True)),
-    )
+        rows.append(surface._asdict() | {name: [[each[name] for each in row] for row in cycles] for name in _CYCLE})
+    usual = dict(zip(("usual_asperities", "usual_distance"), USUAL[quick], strict=True))
+    result = of_rows(_CYCLE, rows, "surface", "model", "realization")
+    return result.assign_coords(model=list(MODELS)).assign_attrs(usual)
 
 
 def change(result: xr.Dataset, name: str) -> xr.DataArray:

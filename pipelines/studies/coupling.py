@@ -7,12 +7,12 @@ from unittest.mock import patch
 
 import numpy as np
 import xarray as xr
-from benchmarks.process import in_new_process
+from benchmarks.child import in_new_process
 from oracles.boundary_elements import HeightMap
 
 from roughmdr.interaction import solve
 from roughmdr.numerics.arguments import Floats
-from studies.comparison import PAIRS, in_cases, law_of
+from studies.comparison import PAIRS, in_cases, law_of, of_rows
 from studies.study import Study, named, table, timed
 from studies.versus_bem import without_grid
 from studies.versus_bem.ensembles import MODULUS, SIZE, Case, height_map, separations
@@ -32,7 +32,7 @@ _COST = {
 }
 
 
-def coupled(ensemble: xr.Dataset, separation: Floats, interaction: Any, dense: bool = True) -> Floats:
+def coupled(ensemble: xr.Dataset, separation: Floats, interaction: Any, dense: bool) -> Floats:
     """Return forces [N] at separations [m], of pairs one by one or, not ``dense``, on a mesh."""
     limit = dict.fromkeys(solve.DENSE_UP_TO, 10**9 if dense else 0)
     with patch.object(solve, "DENSE_UP_TO", limit):
@@ -48,33 +48,22 @@ def by_boundary_elements(ensemble: xr.Dataset, separation: Floats, points: int) 
     return force, seconds / separation.size
 
 
-def compare(quick: bool) -> list[tuple[str, str, float, float]]:
-    """Return methods on separated paraboloids of lognormal radii: name, setting, error and run time of a load [s]."""
+def compare(quick: bool) -> xr.Dataset:
+    """Return error and run time of a load by each method, on separated paraboloids of lognormal radii."""
     ensemble = Case("hard_core 0.7", "lognormal", 100, 0.2, 256, 1).generate()
     along = separations(ensemble, FRACTIONS)
     grids = {points: by_boundary_elements(ensemble, along, points) for points in GRIDS[quick]}
     fine, coarse = (grids[points][0] for points in sorted(grids, reverse=True)[:2])
     exact = without_grid(fine, coarse)
-    asked: list[tuple[str, str, Any, bool]] = [
-        ("independent", "-", None, True),
-        ("mean field", "-", "mean_field", True),
-    ]
+    found = {f"boundary elements, {points} points a side": each for points, each in grids.items()}
     for order, pairs in PAIRS.items():
-        asked.append((f"pairwise, order {order}", "dense", pairs, True))
-        asked += [(f"pairwise, order {order}, mesh", f"error {error:g}", {**pairs, "error": error}, False)
-                  for error in ((1e-6,) if quick else (1e-3, 1e-6, 1e-9))]  # fmt: skip
-    found = []
-    for method, setting, *how in asked:
-        action = partial(coupled, ensemble, along, *how)
+        action = partial(coupled, ensemble, along, pairs, True)
         action()  # compiles
         force, seconds = timed(action, 2)
-        found.append((method, setting, _worst(force, exact), seconds / along.size))
-    by_grid = ((f"{points} points", _worst(force, exact), seconds) for points, (force, seconds) in grids.items())
-    return found + [("boundary elements", *each) for each in by_grid]
-
-
-def _worst(force: Floats, exact: Floats) -> float:
-    return float(np.abs(force / exact - 1.0).max())
+        found[f"pairwise, order {order}"] = force, seconds / along.size
+    rows = [{"method": method, "error": np.abs(force / exact - 1.0).max(), "seconds": seconds}
+            for method, (force, seconds) in found.items()]  # fmt: skip
+    return of_rows(_POINT, rows, "point")
 
 
 def cost(count: int) -> list[float]:
@@ -91,26 +80,22 @@ def cost(count: int) -> list[float]:
 
 def measure(quick: bool) -> xr.Dataset:
     """Return the points of all methods, and the cost for each number of asperities in a process of one core."""
-    points = compare(quick)
     costs = [in_new_process(cost, count, NUMBA_NUM_THREADS="1", OMP_NUM_THREADS="1") for count in COUNTS[quick]]
-    found = in_cases(_POINT, [point[2:] for point in points], "point") | in_cases(_COST, costs, "asperities")
-    words = {name: ("point", [point[i] for point in points]) for i, name in enumerate(("method", "setting"))}
     counts = ("asperities", np.array(COUNTS[quick], dtype=float), named("number of asperities"))
-    return xr.Dataset(found, {**words, "asperities": counts})
+    return compare(quick).assign(in_cases(_COST, costs, "asperities")).assign_coords(asperities=counts)
 
 
 def report(result: xr.Dataset) -> str:
     """Return both tables."""
-    points = (result[name].to_numpy().tolist() for name in ("method", "setting", "error", "seconds"))
-    rows = [[method, setting, f"{100.0 * error:.2g} %", f"{1e3 * seconds:.3g} ms"]
-            for method, setting, error, seconds in zip(*points, strict=True)]  # fmt: skip
+    points = zip(*(result[name].to_numpy() for name in ("method", "error", "seconds")), strict=True)
+    rows = [[method, f"{100.0 * error:.2g} %", f"{1e3 * seconds:.3g} ms"] for method, error, seconds in points]
     costs = [
         [f"{count:,.0f}", *("" if math.isnan(each) else f"{1e3 * each:.3g} ms" for each in seconds)]
         for count, *seconds in zip(*(result[name].to_numpy() for name in ("asperities", *_COST)), strict=True)
     ]
     return f"""The largest error of the force of 100 separated paraboloids of lognormal radii, up to 5 % contact:
 
-{table(["method", "setting", "error of the force", "a load"], rows)}
+{table(["method", "error of the force", "a load"], rows)}
 
 A load to second order on one core, at 1 to 3 % contact:
 
@@ -120,6 +105,6 @@ A load to second order on one core, at 1 to 3 % contact:
 
 STUDY = Study(
     "coupling", "Coupled asperities: error and run time", measure, {}, report,
-    f"up to {max(COUNTS[True])} of {max(COUNTS[False])} asperities, one error; "
+    f"up to {max(COUNTS[True])} of {max(COUNTS[False])} asperities; "
     f"boundary elements of up to {max(GRIDS[True])} of {max(GRIDS[False])} points a side",
 )  # fmt: skip

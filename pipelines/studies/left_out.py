@@ -9,7 +9,7 @@ from unittest.mock import patch
 
 import numpy as np
 import xarray as xr
-from benchmarks.process import in_new_process
+from benchmarks.child import in_new_process
 
 from roughmdr.aggregate import LoadingPath, LoadSeparation, compute
 from roughmdr.aggregate.contacts import update_contact

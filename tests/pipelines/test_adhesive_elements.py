@@ -8,8 +8,7 @@ from carried_out import CarriedOut
 from forms import large
 from oracles.adhesive_elements import AdhesiveMap
 from oracles.boundary_elements import HeightMap
-from studies.versus_adhesive_bem import QUICK, by_elements, judge
-from studies.versus_adhesive_bem.cases import DETACHED, MODELS, WORK, Case, law
+from studies.versus_adhesive_bem import DETACHED, MODELS, QUICK, WORK, Case, by_elements, judge, law
 from studies.versus_bem.ensembles import height_map
 
 import roughmdr as rm

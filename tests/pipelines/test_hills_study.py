@@ -9,8 +9,7 @@ from carried_out import CarriedOut, carried_out
 from studies.comparison import rms
 from studies.hills import METHODS, PERSSON, STUDY, dataset_of, errors_of, groups, press, within
 from studies.hills.convergence import FINEST, SCALES, by_noise, by_points, by_scales
-from studies.hills.maps import QUANTITIES, QUICK, MapCase, by_elements, by_persson, square
-from studies.hills.measured_maps import FILES, FOLDER, press_files
+from studies.hills.maps import FILES, FOLDER, QUANTITIES, QUICK, MapCase, by_elements, by_persson, press_files, square
 
 SHARED = Path(__file__).parents[3] / "shared" / "surfaces"
 

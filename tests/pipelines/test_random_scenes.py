@@ -10,8 +10,7 @@ import numpy as np
 import pytest
 import xarray as xr
 from scenes import ASPERITIES, CONDUCTION, scene
-from studies.random_scenes.curves import returns
-from studies.random_scenes.judge import COMPUTED, Defect, check
+from studies.random_scenes.judge import COMPUTED, Defect, check, returns
 
 import roughmdr as rm
 from roughmdr.scene import read

@@ -8,14 +8,16 @@ import xarray as xr
 from carried_out import CarriedOut
 from forms import large
 from studies.stability import FULL, draw
-from studies.stability.cases import AXES, Case, design
 from studies.stability.judge import (
+    AXES,
     CONTROLS,
     REFUSED,
     RIGHT,
     WRONG,
+    Case,
     DugdaleReference,
     Reference,
+    design,
     on_error,
     on_results,
     verdicts,

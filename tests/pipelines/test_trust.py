@@ -5,10 +5,9 @@ import pytest
 import xarray as xr
 from carried_out import CarriedOut
 from oracles.gaussian_maps import gaussian_map
-from studies.trust import errors
+from studies.trust import by_boundary_elements, by_pairs, by_range_of_adhesion, errors, refined
 from studies.trust.samples import QUICK as SAMPLES
 from studies.trust.scenes import CASES, QUICK
-from studies.trust.truth import by_boundary_elements, by_pairs, by_range_of_adhesion, refined
 
 import roughmdr as rm
 from roughmdr.spectrum import SelfAffine

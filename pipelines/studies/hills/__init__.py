@@ -8,29 +8,10 @@ from itertools import product
 import numpy as np
 import xarray as xr
 
-from roughmdr.ensemble.maps.summits import find_summits
-from studies.comparison import cases_of, in_cases, panels, percent, rms
+from studies.comparison import groups_of, in_cases, panels, percent, rms
+from studies.hills import maps
 from studies.hills.convergence import QUICK_TRIALS, TRIALS, draw_convergence, measure_convergence, report_convergence
 from studies.hills.grids import measure_grids, report_grids
-from studies.hills.maps import (
-    ANISOTROPIC,
-    FRACTIONS,
-    ISOTROPIC,
-    PAIRS,
-    POINTS,
-    QUANTITIES,
-    QUICK,
-    STIFFNESS_EACH,
-    MapCase,
-    Pressed,
-    by_asperities,
-    by_elements,
-    by_persson,
-    hills_of,
-    separations,
-    square,
-)
-from studies.hills.measured_maps import FILES, FOLDER, press_files
 from studies.study import Axes, Figure, Study, named, table, without_limits
 
 COARSE = (2, 3, 4)
@@ -44,16 +25,13 @@ _STYLES = dict(zip(METHODS, zip(_COLOURS, "vsoDDD^P", strict=True), strict=True)
 _CURVES = (*METHODS[:3], METHODS[6])  # methods whose errors are drawn over the contact fraction
 
 
-def press(case: MapCase) -> list[Pressed]:
+def press(case: maps.MapCase) -> list[maps.Pressed]:
     """Return the solution of fine boundary elements, and then that of each method."""
-    separation, surface = separations(case), square(case.height(POINTS))
-    persson = [by_persson(surface, separation, gamma) for gamma in PERSSON.values() if case.anisotropy == 1.0]
+    separation, surface = maps.separations(case), maps.square(case.height(maps.POINTS))
+    persson = [maps.by_persson(surface, separation, gamma) for gamma in PERSSON.values() if case.anisotropy == 1.0]
     return [
-        by_elements(surface, separation),
-        by_asperities(surface, separation, find_summits, None),
-        by_asperities(surface, separation, find_summits, PAIRS),
-        by_asperities(surface, separation, hills_of, PAIRS),
-        *(by_elements(square(case.height(points)), separation) for points in COARSE),
+        *maps.by_elements_and_asperities(surface, separation, maps.PAIRS),
+        *(maps.by_elements(maps.square(case.height(points)), separation) for points in COARSE),
         *persson,
     ]
 
@@ -61,16 +39,16 @@ def press(case: MapCase) -> list[Pressed]:
 def measure(quick: bool) -> xr.Dataset:
     """Press all maps, or a few."""
     with without_limits():
-        press(QUICK[0])  # compiles
+        press(maps.QUICK[0])  # compiles
         pressed = [
             ("isotropic" if case.anisotropy == 1.0 else "4:1", press(case))
-            for case in (QUICK if quick else [*ISOTROPIC, *ANISOTROPIC])
+            for case in (maps.QUICK if quick else [*maps.ISOTROPIC, *maps.ANISOTROPIC])
         ]
-        parts = [dataset_of(pressed + press_files(quick)), measure_convergence(quick), measure_grids(quick)]
+        parts = [dataset_of(pressed + maps.press_files(quick)), measure_convergence(quick), measure_grids(quick)]
     return xr.merge(parts)
 
 
-def dataset_of(pressed: list[tuple[str, list[Pressed]]]) -> xr.Dataset:
+def dataset_of(pressed: list[tuple[str, list[maps.Pressed]]]) -> xr.Dataset:
     """Return the numbers of maps, by the name of their group; NaN of the last methods where there are fewer."""
     words = {
         "force": ("force over the effective modulus", "m2"),
@@ -78,13 +56,13 @@ def dataset_of(pressed: list[tuple[str, list[Pressed]]]) -> xr.Dataset:
         "stiffness": ("-dF/dh over the effective modulus", "m"),
     }
     seconds = {"seconds": ("run time of force and area along a path", "s")}
-    numbers = [{name: [getattr(one, name) for one in each] for name in Pressed._fields} for _, each in pressed]
+    numbers = [{name: [getattr(one, name) for one in each] for name in maps.Pressed._fields} for _, each in pressed]
     solvers = ["fine elements", *METHODS][: max(len(each) for _, each in pressed)]
     return xr.Dataset(
         in_cases(words, numbers, "case", "solver", "fraction") | in_cases(seconds, numbers, "case", "solver"),
         {
             "solver": solvers,
-            "fraction": ("fraction", FRACTIONS, named("contact fraction of the separation, about")),
+            "fraction": ("fraction", maps.FRACTIONS, named("contact fraction of the separation, about")),
             "maps": ("case", [name for name, _ in pressed]),
         },
     )
@@ -104,14 +82,14 @@ def within(errors: xr.DataArray, share: tuple[float, float]) -> xr.DataArray:
 
 def groups(result: xr.Dataset) -> dict[str, xr.Dataset]:
     """Return isotropic and anisotropic maps, and each that was measured."""
-    return {name: cases_of(result, maps=name) for name in dict.fromkeys(result["maps"].to_numpy().tolist())}
+    return {name: own for (name,), own in groups_of(result, "maps")}
 
 
 def report(result: xr.Dataset) -> str:
     """Return errors and run times of each method, and what the errors of hills hang on."""
     rows = []
     for (name, own), method in product(groups(result).items(), METHODS):
-        force, area, stiffness = (errors_of(own, quantity).sel(solver=method) for quantity in QUANTITIES)
+        force, area, stiffness = (errors_of(own, quantity).sel(solver=method) for quantity in maps.QUANTITIES)
         if np.isfinite(force).any():
             rows.append([
                 name, method, percent(rms(force)), f"{100.0 * float(force.mean()):+.1f} %",
@@ -126,11 +104,11 @@ def report(result: xr.Dataset) -> str:
             "stiffness, rms", "a path"]  # fmt: skip
     counts = "; ".join(f"{own.sizes['case']} {name}" for name, own in groups(result).items())
     return f"""Maps: {counts}. They are pressed at {result.sizes["fraction"]} separations from 0.3 to 20 % contact, and
-held against boundary elements with {POINTS} points a shortest wave; errors by contact fraction are of the force, r.m.s.
-The stiffness -dF/dh is held against theirs at every {STIFFNESS_EACH}th separation, and is no part of the run times.
-Measured maps are pressed where the environment variable {FOLDER} names a folder with {" or ".join(FILES)}:
-squares from the middle, against boundary elements of a free half-space on the same points. Errors are those of the
-forces of all cells, those at the border too, where summits beyond it are missing.
+held against boundary elements with {maps.POINTS} points a shortest wave; errors by contact fraction are of the force,
+r.m.s. The stiffness -dF/dh is held against theirs at every {maps.STIFFNESS_EACH}th separation, and is no part of the
+run times. Measured maps are pressed where the environment variable {maps.FOLDER} names a folder with
+{" or ".join(maps.FILES)}: squares from the middle, against boundary elements of a free half-space on the same points.
+Errors are those of the forces of all cells, those at the border too, where summits beyond it are missing.
 
 {table(head, rows)}
 
@@ -177,7 +155,7 @@ def _draw_errors(panel: Axes, own: xr.Dataset) -> None:
 STUDY = Study(
     "hills", "Summits and hills of maps against boundary elements", measure,
     {"hills": draw, "hills_convergence": draw_convergence}, report,
-    f"{len(QUICK)} of {len(ISOTROPIC) + len(ANISOTROPIC)} maps; convergence on "
+    f"{len(maps.QUICK)} of {len(maps.ISOTROPIC) + len(maps.ANISOTROPIC)} maps; convergence on "
     f"{len(QUICK_TRIALS)} smaller maps in place of {len(TRIALS)}, with elements half as fine; "
     "smaller pieces of measured maps; 8 of 48 references, the coarsest",
 )  # fmt: skip

@@ -62,7 +62,7 @@ def _measure(case: MapCase, finest_elements: int) -> dict[str, Floats]:
     """Return the numbers of one map, by the names of variables."""
     separation, height = separations(case), case.height(POINTS)
     elements = np.array(
-        [by_elements(square(case.height(points)), separation).numbers for points in (POINTS, finest_elements)]
+        [by_elements(square(case.height(points)), separation)[:3] for points in (POINTS, finest_elements)]
     )
     white = np.random.default_rng([case.seed, round(10 * case.hurst), case.bandwidth, 1]).standard_normal(height.shape)
     shaken = [square(height + noise * height.std() * white) for noise in (0.0, *NOISE)]

@@ -1,7 +1,14 @@
-"""Gaussian self-affine maps, the same on grids of any fineness, and one such map pressed by one method: over E*."""
+"""Gaussian self-affine maps, the same on grids of any fineness, and measured ones, pressed by one method: over E*.
 
+Of measured maps, which do not repeat, squares from the middle stand beside boundary elements of a free half-space. The
+files are no part of the project; the environment variable ``ROUGHMDR_SURFACES`` names a folder that holds them.
+"""
+
+import os
 import time
 from collections.abc import Callable
+from functools import partial
+from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -9,8 +16,10 @@ import numpy as np
 import roughmdr as rm
 from roughmdr.elements.half_space import BoundaryElements
 from roughmdr.ensemble.ensemble import Ensemble
+from roughmdr.ensemble.maps.detrend import remove_trend
 from roughmdr.ensemble.maps.height_map import HeightMap
-from roughmdr.ensemble.maps.hills.find import SCALES, find_hills
+from roughmdr.ensemble.maps.hills.find import SCALES, find_hills, wavelength
+from roughmdr.ensemble.maps.read_map import read_map
 from roughmdr.ensemble.maps.summits import find_summits
 from roughmdr.ensemble.maps.waves import MapWaves
 from roughmdr.numerics.arguments import Floats
@@ -77,11 +86,6 @@ class Pressed(NamedTuple):
     stiffness: Floats  # -dF/dh [m]
     seconds: float
 
-    @property
-    def numbers(self) -> Floats:
-        """The quantities over the separations, [quantity, separation]."""
-        return np.array([self.force, self.contact_fraction, self.stiffness])
-
 
 def square(height: Floats) -> HeightMap:
     """Return heights [m] as a map of the study: periodic, of the side ``SIDE``."""
@@ -93,7 +97,7 @@ def hills_of(surface: HeightMap, scales: int = SCALES) -> Ensemble:
     return find_hills(surface, find_summits(surface), scales)
 
 
-def by_elements(surface: HeightMap, separation: Floats, *, stiffness: bool = True) -> Pressed:
+def by_elements(surface: HeightMap, separation: Floats) -> Pressed:
     """Return the solution of boundary elements at separations [m]; one after the other, each from the last."""
     started = time.perf_counter()
     elements, side = elements_of(surface)
@@ -104,7 +108,7 @@ def by_elements(surface: HeightMap, separation: Floats, *, stiffness: bool = Tru
         found[0, i] = elements.press(h) * side * side
         found[1, i] = elements.patches().area / float(elements.sides.prod())
         seconds += time.perf_counter() - started
-        if stiffness and i % STIFFNESS_EACH == 0:
+        if i % STIFFNESS_EACH == 0:
             found[2, i] = elements.stiffness(h) * side
     return Pressed(found[0], found[1], found[2], seconds)
 
@@ -127,13 +131,16 @@ def by_asperities(
     surface: HeightMap, separation: Floats, find: Callable[[HeightMap], Ensemble], interaction: Any
 ) -> Pressed:
     """Return the law of the asperities of a map at separations [m]; NaN where it has none."""
-
-    def law(*variables: str) -> list[Floats]:
-        return law_or_nan(found, separation, *variables, effective_modulus=1.0, interaction=interaction)
-
     found, finding = timed(lambda: find(surface).labelled().to_xarray())
+    law = partial(law_or_nan, found, separation, effective_modulus=1.0, interaction=interaction)
     (force, contact_fraction), seconds = timed(lambda: law("force", "contact_fraction"))
     return Pressed(force, contact_fraction, law("stiffness")[0], finding + seconds)
+
+
+def by_elements_and_asperities(surface: HeightMap, separation: Floats, pairs: Any) -> list[Pressed]:
+    """Return the solution of boundary elements, and the laws of summits, alone and in pairs, and of hills in pairs."""
+    laws = [(find_summits, None), (find_summits, pairs), (hills_of, pairs)]
+    return [by_elements(surface, separation), *(by_asperities(surface, separation, *each) for each in laws)]
 
 
 def by_persson(surface: HeightMap, separation: Floats, gamma: float) -> Pressed:
@@ -158,6 +165,10 @@ POINTS = 8  # points a shortest wave of the map, and of the boundary elements th
 FRACTIONS = np.geomspace(0.003, 0.2, 9)
 _POINTS = 4  # a shortest wave, of the elements that look for the separations
 _SEARCHED = 12  # separations, between which those of the fractions are found
+FOLDER = "ROUGHMDR_SURFACES"
+FILES = ("optical.nc", "afm_film.di")
+_ALONE = {"model": "pairwise", "boundary": "free"}
+_WAVES, _FEW_WAVES = 32, 12  # most waves a side of a square; the latter in the reduced form
 
 
 def separations(case: MapCase) -> Floats:
@@ -166,3 +177,24 @@ def separations(case: MapCase) -> Floats:
     tried = np.linspace(0.98 * float(height.max()), 0.2 * float(height.std()), _SEARCHED)
     elements, side = elements_of(square(height))
     return side * where_reached(elements, tried / side, FRACTIONS)
+
+
+def middle_of(path: Path, waves: int) -> HeightMap:
+    """Return a square from the middle of a map, a quadratic removed from the whole."""
+    surface = read_map(path)
+    remove_trend(surface.height, "quadratic")
+    points = min(*surface.height.shape, round(waves * wavelength(surface) / surface.dx))
+    first, second = ((length - points) // 2 for length in surface.height.shape)
+    return surface._replace(height=surface.height[first : first + points, second : second + points].copy())
+
+
+def press_files(quick: bool) -> list[tuple[str, list[Pressed]]]:
+    """Return each map that is here, by its name, with ``by_elements_and_asperities``."""
+    folder, found = os.environ.get(FOLDER), []
+    for path in filter(Path.exists, (Path(folder, name) for name in FILES if folder)):
+        surface = middle_of(path, _FEW_WAVES if quick else _WAVES)
+        elements, side = elements_of(surface)
+        tried = float(elements.height.max()) - np.linspace(0.02, 1.0, _SEARCHED) * float(np.ptp(elements.height))
+        solved = by_elements_and_asperities(surface, side * where_reached(elements, tried, FRACTIONS), _ALONE)
+        found.append((f"{path.name}, {wavelength(surface) / surface.dx:.1f} points a wavelength", solved))
+    return found

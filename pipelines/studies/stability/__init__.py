@@ -11,12 +11,14 @@ import cProfile
 import math
 import operator
 from collections import Counter
+from collections.abc import Iterator
 from functools import partial
+from itertools import product
 from typing import Any, Literal
 
 import numpy as np
 import xarray as xr
-from benchmarks.process import in_new_process
+from benchmarks.child import in_new_process
 
 import roughmdr as rm
 from roughmdr.asperity.contact import Contact
@@ -24,12 +26,11 @@ from roughmdr.kernels.adhesion import Adhesion
 from roughmdr.kernels.closed import jkr_power
 from roughmdr.kernels.dugdale import equilibrium
 from roughmdr.numerics.arguments import Floats
-from studies.comparison import groups_of
-from studies.stability.cases import AXES, Case, design
-from studies.stability.crowding import crowded, crowds
-from studies.stability.judge import MODELS, OUTCOMES, REFUSED, WRONG, Verdict, verdicts
+from studies.comparison import PAIRS, groups_of, law_of
+from studies.stability.judge import AXES, MODELS, OUTCOMES, REFUSED, WRONG, Case, Verdict, design, verdicts
 from studies.stability.metamorphic import KINDS, QUICK as QUICK_KINDS, checks
 from studies.study import Axes, Figure, Study, blank, in_two_processes, named, table
+from studies.versus_bem.ensembles import MODULUS, Case as Crowd, separations
 
 FULL, QUICK = {"elastic": 512, "jkr": 512, "dugdale": 128}, {"elastic": 16, "jkr": 16, "dugdale": 4}
 """Number of cases for each model, from the beginning of one sequence."""
@@ -37,6 +38,9 @@ COUNTED, COUNTED_QUICKLY = 128, 16  # number of cases for each model with adhesi
 EQUILIBRIUM: dict[Literal["jkr", "dugdale"], Any] = {"jkr": jkr_power._distance, "dugdale": equilibrium.state_along}
 """The kernel that evaluates an equilibrium, by adhesion model."""
 CELLS = 8  # along an axis
+_TIGHT = 1e-9  # error of the force that that of the package is held against
+_FRACTIONS = np.array([1e-3, 0.01, 0.03, 0.06, 0.1, 0.2])
+"""Contact fractions of independent asperities, from first contact on."""
 _COLORS = {"right": "#1b6ca8", "refused": "#b8b8b8", "wrong": "#ff00c8"}
 _LEAST = 1e-2  # least error over what is allowed that the colours tell apart
 
@@ -52,8 +56,8 @@ def measure(quick: bool) -> xr.Dataset:
         *(partial(judge_case, case, [model for model in MODELS if number < counts[model]])
           for number, case in enumerate(cases)),
     ]  # fmt: skip
-    changes, crowds, tried, *found = in_two_processes(operator.call, jobs)
-    tables = {"change": changes, "crowd": crowds}
+    changes, pressed, tried, *found = in_two_processes(operator.call, jobs)
+    tables = {"change": changes, "crowd": pressed}
     columns = {f"{dim}_{name}": (dim, [row[name] for row in rows]) for dim, rows in tables.items() for name in rows[0]}
     evaluated = ("counted_case", "counted_law"), tried, named("equilibria evaluated to find a contact")
     result = of_verdicts(cases, found).assign(columns)
@@ -63,6 +67,48 @@ def measure(quick: bool) -> xr.Dataset:
 def judge_case(case: Case, models: list[str]) -> list[list[Verdict]]:
     """Return the verdicts under each of the models."""
     return [verdicts(case, model) for model in models]
+
+
+def crowds(quick: bool) -> Iterator[tuple[Crowd, float]]:
+    """Yield crowds at random, some of which overlap, and over how many decades radii spread: of paraboloids alone."""
+    counts, roughnesses = ((60,), (0.05,)) if quick else ((60, 250, 700), (1e-3, 0.05, 1.0))
+    for seed, (shape, count, roughness) in enumerate(product(("paraboloid", "cone", "quartic"), counts, roughnesses)):
+        for decades in (0.0, 2.0, 6.0) if shape == "paraboloid" else (0.0,):
+            yield Crowd("random", shape, count, roughness, 64, seed), decades
+
+
+def press(case: Crowd, decades: float) -> dict[str, Any]:
+    """Press a crowd; count its steps, those marked and those without an equilibrium.
+
+    The excess is the largest error of the force, against one by a thousand times smaller errors, over the stated one.
+    """
+    ensemble = case.generate()
+    if decades:
+        spread = np.random.default_rng(case.seed).uniform(-decades, 0.0, case.asperities)
+        ensemble["radius"] = ensemble["radius"] * 10.0**spread
+    along = separations(ensemble, _FRACTIONS)
+    along = along[np.isfinite(along)]
+    found, tight = (
+        law_of(ensemble, separation=along, effective_modulus=MODULUS, variables="force",
+               interaction={**PAIRS[2], "error": error})
+        for error in (1e-6, _TIGHT)
+    )  # fmt: skip
+    force, exact = found["force"].to_numpy(), tight["force"].to_numpy()
+    solved = np.isfinite(force) & np.isfinite(exact)
+    off = float(np.abs(force - exact)[solved].max(initial=0.0) / np.abs(exact[solved]).max(initial=1e-300))
+    stated = float(found["numerical_error"] + tight["numerical_error"])
+    return {
+        "name": f"{case.shape}, radii over {decades:g} decades" if decades else case.shape,
+        "steps": along.size,
+        "marked": int(found["marked_steps"]),
+        "without": int(np.isnan(force).sum()),
+        "excess": off / max(stated, _TIGHT),
+    }
+
+
+def crowded(quick: bool) -> list[dict[str, Any]]:
+    """Return the outcomes of all crowds."""
+    return [press(*crowd) for crowd in crowds(quick)]
 
 
 def of_verdicts(cases: list[Case], found: list[list[list[Verdict]]]) -> xr.Dataset:

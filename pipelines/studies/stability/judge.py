@@ -1,24 +1,102 @@
-"""The questions asked in a case of the stability study under each adhesion model, judged right, refused or wrong."""
+"""Ensembles of power laws placed over seven axes, and the questions asked of each under each adhesion model.
+
+Answers are right, refused or wrong.
+"""
 
 import math
 import re
 from collections.abc import Sequence
 from typing import Any, NamedTuple
 
+import numpy as np
 import xarray as xr
 from oracles.dugdale_power_law import DugdalePowerLaw
 from oracles.jkr import JkrPowerLaw
 from oracles.multiprecision import Number, mp
 from oracles.promises import Judged, Results, judge, judge_dugdale, natural_scales, numbers_at, representable
+from scipy.stats import qmc
 
 import roughmdr as rm
-from studies.stability.cases import Case
 from studies.study import without_limits
 
+SEED = 20260
+ASPERITIES = 3  # asperities of a case
+_WIDTHS = (0.0, -0.5, 0.5)  # logarithms of the widths of the asperities, in spreads [decades]
+_MARGIN = 0.04  # part of the cases that lies at each end of an axis
 MODELS = ("elastic", "jkr", "dugdale")
 OUTCOMES = RIGHT, REFUSED, WRONG = ("right", "refused", "wrong")
 CONTROLS = ("indentation", "force", "contact_radius")
 _TINY = 1e-300  # replaces no force at all
+
+
+class Axis(NamedTuple):
+    """A quantity between two ends, varied in the logarithm of its distance to ``origin``, or linearly (None)."""
+
+    long_name: str
+    label: str
+    units: str
+    low: float
+    high: float
+    origin: float | None = 0.0
+
+    def at(self, fraction: float) -> float:
+        """Return the value at a fraction of the axis."""
+        if self.origin is None:
+            return self.low + fraction * (self.high - self.low)
+        near, far = self.low - self.origin, self.high - self.origin
+        return float(np.clip(self.origin + near * (far / near) ** fraction, self.low, self.high))
+
+    def fraction(self, values: Any) -> Any:
+        """Return the fractions of the axis at which ``values`` lie."""
+        if self.origin is None:
+            return (values - self.low) / (self.high - self.low)
+        near, far = self.low - self.origin, self.high - self.origin
+        return np.log((values - self.origin) / near) / np.log(far / near)
+
+
+AXES = {
+    "effective_modulus": Axis("effective modulus", "E* [Pa]", "Pa", 1e3, 1e13),
+    "width": Axis("width of the asperities", "width [m]", "m", 1e-10, 1.0),
+    "work": Axis("work of adhesion", "w [J/m²]", "J m-2", 1e-9, 10.0),
+    "exponent": Axis("exponent of the profile", "exponent", "1", 0.51, 200.0, 0.5),
+    "tabor": Axis("Tabor number", "Tabor number", "1", 1e-3, 1e3),
+    "distance": Axis("distance to the fold over its depth", "distance to fold", "1", 1e-12, 1e3),
+    "spread": Axis("decades over which the widths are spread", "spread [decades]", "1", 0.0, 6.0, None),
+}
+_ASPECT = Axis("rise over width", "aspect", "1", 1e-4, 10.0)
+
+
+class Case(NamedTuple):
+    """An ensemble of power-law asperities, each at a distance from its fold, the first at ``distance``."""
+
+    effective_modulus: float
+    width: float
+    work: float
+    exponent: float
+    tabor: float
+    distance: float
+    spread: float
+    aspect: float
+    other_distances: tuple[float, ...]
+
+    def shapes(self) -> list[rm.PowerLaw]:
+        """Return the asperities."""
+        widths = [self.width * 10.0 ** (self.spread * position) for position in _WIDTHS]
+        return [rm.PowerLaw(exponent=self.exponent, width=width, rise=self.aspect * width) for width in widths]
+
+    def distances(self) -> tuple[float, ...]:
+        """Return the distance of each asperity from its fold, over the depth of the fold."""
+        return (self.distance, *self.other_distances)
+
+
+def design(count: int) -> list[Case]:
+    """Return cases that fill the space of all axes evenly, in every leading part of the list too (Sobol's sequence)."""
+    fractions = qmc.Sobol(len(AXES) + ASPERITIES, rng=SEED).random(count)
+    fractions = np.clip((fractions - _MARGIN) / (1.0 - 2.0 * _MARGIN), 0.0, 1.0)
+    axes = [*AXES.values(), _ASPECT, *[AXES["distance"]] * (ASPERITIES - 1)]
+    rows = [[axis.at(float(fraction)) for axis, fraction in zip(axes, row, strict=True)] for row in fractions]
+    first = len(AXES) + 1
+    return [Case._make([*row[:first], tuple(row[first:])]) for row in rows]
 
 
 class Reference:
@@ -135,7 +213,7 @@ def verdicts(case: Case, model: str) -> list[Verdict]:
         found = [_one(*each, control, given) for each in alone for control in CONTROLS]
         depths = [reference.depth() for reference in references]
         if model == "elastic" or representable(depths):
-            found.append(_sum(shapes, references, depths, case.distances(), given))
+            found.append(_sum(case, references, depths, given))
         return found
 
 
@@ -149,18 +227,13 @@ def _one(shape: rm.PowerLaw, reference: Reference, distance: float, control: str
     return on_results(reference.judge(control, {str(name): float(contact[name]) for name in contact.variables}))
 
 
-def _sum(
-    shapes: list[rm.PowerLaw],
-    references: Sequence[Reference],
-    depths: list[Number],
-    distances: tuple[float, ...],
-    given: dict[str, Any],
-) -> Verdict:
+def _sum(case: Case, references: Sequence[Reference], depths: list[Number], given: dict[str, Any]) -> Verdict:
     """Judge the sum: pressed until all touch, back to the distances to the folds, and until the first detaches.
 
     The error of the force must be within the stated one, and the number of contacts right.
-    """  # fmt: skip
-    targets = [reference.value("indentation", each) for reference, each in zip(references, distances, strict=False)]
+    """
+    shapes, pairs = case.shapes()[: len(references)], zip(references, case.distances(), strict=False)
+    targets = [reference.value("indentation", each) for reference, each in pairs]
     height = [float(value) for value in targets]
     ends = sorted(float(z + depth) for z, depth in zip(targets, depths, strict=True))
     low = float(min(z - depth for z, depth in zip(targets, depths, strict=True))) if any(depths) else 0.5 * min(height)

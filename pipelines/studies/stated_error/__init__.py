@@ -53,21 +53,16 @@ def judge(drawn: RandomScene, disturbance: float = 0.0) -> Judged:
         result = rm.run(drawn.table)
     if (result.status != 0).any():
         return Judged(np.nan, np.nan, str(result.remark.values.ravel()[0]))
-    stated = float(result.numerical_error.max())
-    exact = reference(drawn, result.separation.to_numpy(), stated)
+    stated, given, separation = float(result.numerical_error.max()), read(drawn.table), result.separation.to_numpy()
+    if drawn.estimator == "expected":
+        exact: Array = expected_force(given, separation, stated)
+    else:
+        draws = [force_of_draws(given, each, separation) for each in range(given.batch.realizations)]
+        exact = np.mean(draws, axis=0)
     computed = result.force_mean if "force_mean" in result else result.force.isel(realization=0)
     largest = np.abs(exact).max()
     error = np.abs(computed.to_numpy() + disturbance * stated * float(largest) - exact).max()
     return Judged(float(error / largest) if largest else float(error), stated)
-
-
-def reference(drawn: RandomScene, separation: Floats, stated: float) -> Array:
-    """Return the force [N] at each step, of any precision; the mean over all realisations."""
-    given = read(drawn.table)
-    if drawn.estimator == "expected":
-        return expected_force(given, separation, stated)
-    count = given.batch.realizations
-    return np.asarray(sum(force_of_draws(given, each, separation) for each in range(count)) / count)
 
 
 def force_of_draws(scene: Scene, realization: int, separation: Floats) -> Array:

@@ -1,24 +1,31 @@
-"""Each scene is run by the command line; its stated error is held against the error that its force has."""
+"""Each scene is run by the command line; its stated error is held against the error that its force has.
+
+True forces are by boundary elements, or of paraboloids that feel each other in pairs. Pairs adhere as in JKR; the
+difference that the range of adhesion makes is added from independent asperities.
+"""
 
 import math
 import tempfile
 from contextlib import chdir
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import xarray as xr
+from oracles.boundary_elements import HeightMap
+from oracles.pairwise import Paraboloids, periodic_green
 
 import roughmdr as rm
+from roughmdr.aggregate.tabor import ASSUMED_RANGE
 from roughmdr.numerics.arguments import Floats
 from roughmdr.scene import Scene, read
-from studies.comparison import FACTOR, bounds, draw_stated, of_rows, panels
+from studies.comparison import FACTOR, bounds, draw_stated, law_of, of_rows, panels
 from studies.study import Figure, Study, table, without_limits
 from studies.traps import said_and_found
 from studies.trust.samples import CASES as SURFACES, measure_samples, report_samples
 from studies.trust.scenes import CASES, QUICK, Case
-from studies.trust.truth import MAPS, by_boundary_elements, by_pairs, by_range_of_adhesion, of_map
-from studies.versus_bem.ensembles import write_map
+from studies.versus_bem.ensembles import distances, height_map, side, write_map
 
 _NAMES = {
     "exit_status": ("exit status of the run", "1"),
@@ -33,6 +40,9 @@ _ORACLES = {
     "map": "boundary elements on the map",
     "maps": "boundary elements, mean of Gaussian maps",
 }
+_LIFTED = 0.3  # largest lift of the surface between contacts by their pressure, over the deepest overlap
+_LOADING = 60  # steps of the path that pairs are taken along
+MAPS = 5  # Gaussian maps whose mean force is compared with the expected law
 
 
 def carry_out(case: Case, folder: Path) -> dict[str, Any]:
@@ -61,13 +71,48 @@ def true_force(case: Case, scene: Scene, loading: Floats) -> float:
     """Return the true force [N] at the end of the loading."""
     modulus, work, separation = scene.effective_modulus, scene.work, float(loading[-1])
     if case.surface is not None:
-        maps = range(1, MAPS + 1) if case.oracle == "maps" else (1,)
-        return float(np.mean(of_map(case.surface, maps, modulus, separation)))
+        heights = map(case.surface.height, range(1, MAPS + 1 if case.oracle == "maps" else 2))
+        maps = (HeightMap(refined(each, case.surface.refined), case.surface.size, modulus) for each in heights)
+        return float(np.mean([each.press(separation).force for each in maps]))
     ensemble = rm.generate(scene.asperities, seed=scene.seed)  # with positions
     if case.oracle == "boundary elements":
         return by_boundary_elements(ensemble, case.points, modulus, separation)
     force = by_pairs(ensemble, modulus, work, separation)
     return force + by_range_of_adhesion(ensemble, modulus, work, loading) if work else force
+
+
+def by_boundary_elements(ensemble: xr.Dataset, points: int, modulus: float, separation: float) -> float:
+    """Return the force [N] of asperities at a separation [m]; infinite in full contact."""
+    size = side(ensemble)
+    return HeightMap(height_map(ensemble, points), size, modulus).press(separation).force
+
+
+def refined(height: Floats, factor: int) -> Floats:
+    """Return a periodic map, of as many points in both directions, with its waves on a grid finer by a whole factor."""
+    waves = np.fft.fftshift(np.fft.fft2(height))
+    added = height.shape[0] * (factor - 1) // 2
+    return np.asarray(np.fft.ifft2(np.fft.ifftshift(np.pad(waves, added))).real * factor**2)
+
+
+def by_pairs(ensemble: xr.Dataset, modulus: float, work: float, closest: float) -> float:
+    """Return the force [N] of paraboloids at the closest separation [m], loaded from first touch on."""
+    height, radius = (ensemble[name].to_numpy() for name in ("height", "radius"))
+    flanks = height[:, None] - 0.5 * distances(ensemble) ** 2 / radius[:, None]
+    high = height > closest - _LIFTED * (height.max() - closest)
+    may_touch = high & ~(flanks > height).any(axis=0)  # tops below the flank of another never do
+    x, y, height, radius = (ensemble[name].to_numpy()[may_touch] for name in ("x", "y", "height", "radius"))
+    pressed = Paraboloids(height, radius, periodic_green(x, y, side(ensemble), modulus), modulus, work)
+    return [pressed.press(float(h)).force for h in np.linspace(height.max(), closest, _LOADING)][-1]
+
+
+def by_range_of_adhesion(ensemble: xr.Dataset, modulus: float, work: float, path: Floats) -> float:
+    """Return how much more force [N] at closest approach an adhesion has that reaches as far as that of van der Waals.
+
+    It is that of independent asperities, by Dugdale's model beside JKR.
+    """
+    law = partial(law_of, ensemble, separation=path, effective_modulus=modulus, work=work, variables="force")
+    dugdale, jkr = law(adhesion="dugdale", range=ASSUMED_RANGE), law()
+    return float(dugdale["force"][-1] - jkr["force"][-1])
 
 
 def measure(quick: bool) -> xr.Dataset:

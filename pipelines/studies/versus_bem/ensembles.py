@@ -53,17 +53,15 @@ class Case(NamedTuple):
         """Return the ensemble, with positions."""
         if self.shape == "nayak":
             return self._nayak()
-        shape: dict[str, object]
-        match self.shape:
-            case "cone":
-                shape, drop = {"shape": "cone", "slope": _DROP / self.spacing}, _DROP
-            case "quartic":
-                shape = {"shape": "power_law", "exponent": 4.0, "width": self.spacing, "rise": _DROP}
-                drop = _DROP
-            case name:
-                lognormal = {"distribution": "lognormal", "mean": _RADIUS, "std": 0.3 * _RADIUS}
-                shape = {"shape": "paraboloid", "radius": lognormal if name == "lognormal" else _RADIUS}
-                drop = 0.5 * self.spacing**2 / _RADIUS
+        lognormal = {"distribution": "lognormal", "mean": _RADIUS, "std": 0.3 * _RADIUS}
+        shapes: dict[str, dict[str, object]] = {
+            "cone": {"shape": "cone", "slope": _DROP / self.spacing},
+            "quartic": {"shape": "power_law", "exponent": 4.0, "width": self.spacing, "rise": _DROP},
+            "paraboloid": {"shape": "paraboloid", "radius": _RADIUS},
+            "lognormal": {"shape": "paraboloid", "radius": lognormal},
+        }
+        shape = shapes[self.shape]
+        drop = 0.5 * self.spacing**2 / _RADIUS if "radius" in shape else _DROP
         placement, _, distance = self.placement.partition(" ")
         if placement == "hard_core":
             shape["min_distance"] = float(distance) * self.spacing

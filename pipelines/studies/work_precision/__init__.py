@@ -10,10 +10,10 @@ from typing import Any, NamedTuple
 import numpy as np
 import xarray as xr
 
-from studies.comparison import cases_of, in_cases
+from studies.comparison import groups_of, of_rows
 from studies.study import Figure, Study, blank, named, table, without_limits
 from studies.work_precision import surface, tip
-from studies.work_precision.points import QUANTITIES, Method, Reference
+from studies.work_precision.points import QUANTITIES, Errors, Method, Reference
 
 
 class Part(NamedTuple):
@@ -37,27 +37,19 @@ _COLOURS = [f"C{number}" for number in range(10)] + ["#1b1b1b", "#b8860b", "#3cb
 
 def measure(quick: bool) -> xr.Dataset:
     """Return the points of all methods on all scenes; quick without the last scene of each part."""
-    found = []
+    rows, errors = list[dict[str, Any]](), list[Errors]()
     with without_limits():  # all methods suppose the same
         for part in PARTS:
             for title, scene in list(part.scenes.items())[: -1 if quick else None]:
                 exact = part.reference(scene, quick=quick)
                 for method in part.methods:
-                    found += [(title, method, *point) for point in method.points(scene, exact, quick)]
-    titles, methods, settings, *numbers = map(list, zip(*found, strict=True))
-    return xr.Dataset(
-        {
-            "error": (("point", "quantity"), numbers[0], named("relative error of a quantity")),
-            **in_cases(_POINT, list(zip(settings, *numbers[1:], strict=True)), "point"),
-            "setting_of": ("point", [method.setting for method in methods]),
-            "competes": ("point", [int(each.competes) for each in methods], named("whether it may be the cheapest")),
-        },
-        {
-            "scene": ("point", titles),
-            "method": ("point", [method.name for method in methods]),
-            "quantity": list(QUANTITIES),
-        },
-    )
+                    labels = {"setting_of": method.setting, "competes": int(method.competes)}
+                    for point in method.points(scene, exact, quick):
+                        numbers = {name: getattr(point, name) for name in _POINT}
+                        rows.append({"scene": title, "method": method.name, **labels, **numbers})
+                        errors.append(point.errors)
+    error = ("point", "quantity"), errors, named("relative error of a quantity")
+    return of_rows(_POINT, rows, "point").assign(error=error).assign_coords(quantity=list(QUANTITIES))
 
 
 def cheapest(result: xr.Dataset, scene: str, quantity: str, error: float) -> xr.Dataset | None:
@@ -75,8 +67,8 @@ def report(result: xr.Dataset) -> str:
     for quantity in QUANTITIES:
         rows = [
             [scene, *(_in_words(cheapest(result, scene, quantity, error)) for error in TARGETS)]
-            for scene in _unique(result.scene)
-            if not np.isnan(cases_of(result, scene=scene).error.sel(quantity=quantity)).all()
+            for (scene,), own in groups_of(result, "scene")
+            if not np.isnan(own.error.sel(quantity=quantity)).all()
         ]
         lines += [table([f"error of the {quantity}", *(f"{100 * error:g} %" for error in TARGETS)], rows), ""]
     return "\n".join(lines)
@@ -91,22 +83,16 @@ def _in_words(point: xr.Dataset | None) -> str:
     return f"{point.method.item()}{what}: {1e3 * float(point.seconds):.2g} ms ({float(point.evaluations):,.0f})"
 
 
-def _unique(values: xr.DataArray) -> list[str]:
-    return list(dict.fromkeys(values.to_numpy().tolist()))
-
-
 def draw(result: xr.Dataset) -> Figure:
     """Draw for each scene the errors of the force, and of the pull-off force or area, a curve for each method."""
-    scenes, handles = _unique(result.scene), dict[str, Any]()
+    scenes, handles = list(groups_of(result, "scene")), dict[str, Any]()
     figure = blank(4.0 * len(scenes), 8.6)
     panels = figure.subplots(2, len(scenes), squeeze=False)
-    colours = dict(zip(_unique(result.method), _COLOURS, strict=False))
-    for column, scene in zip(panels.T, scenes, strict=True):
-        own = cases_of(result, scene=scene)
+    colours = dict(zip(dict.fromkeys(result.method.values.tolist()), _COLOURS, strict=False))
+    for column, ((scene,), own) in zip(panels.T, scenes, strict=True):
         second = "contact area" if np.isnan(own.error.sel(quantity="pull-off force")).all() else "pull-off force"
         for panel, quantity in zip(column, ("force", second), strict=True):
-            for name in _unique(own.method):
-                curve = cases_of(own, method=name)
+            for (name,), curve in groups_of(own, "method"):
                 error = np.maximum(curve.error.sel(quantity=quantity).to_numpy(), _MIN_ERROR)
                 marker, size = ("*", 12.0) if curve.sizes["point"] == 1 else ("o", 3.5)
                 line = f"{marker}{'-' if curve.competes.all() else ':'}"
