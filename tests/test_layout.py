@@ -235,7 +235,7 @@ def test_no_module_imports_itself_by_way_of_others() -> None:
 def test_files_are_short() -> None:
     lengths = [len(path.read_text().splitlines()) for path in FILES if path.name != "__init__.py"]
     assert max(lengths) <= 300
-    assert 60 <= statistics.median(lengths) <= 120
+    assert 60 <= statistics.median(lengths) <= 150
 
 
 def test_no_function_has_many_parameters() -> None:

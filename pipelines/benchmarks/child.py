@@ -38,12 +38,6 @@ def in_new_process(function: Callable[..., Any], *arguments: Any, **environment:
     return json.loads(done.stdout.splitlines()[-1])
 
 
-def peak_memory() -> int:
-    """Return the bytes that this process has taken at most so far. Needs /proc."""
-    status = Path("/proc/self/status").read_text().splitlines()
-    return next(1024 * int(line.split()[1]) for line in status if line.startswith("VmHWM"))
-
-
 def small_scene(*, count: int = 10, steps: int = 20, unload: bool = True, **sections: dict[str, Any]) -> Scene:
     """Return a scene of few asperities; other sections as they are given."""
     random = {"source": "random", "shape": "paraboloid", "count": count, "patch": "1 m"}
