@@ -16,20 +16,25 @@ UNCOMPILED := $(addprefix tests/,asperity kernels numerics shapes springs \
   $(addsuffix .py,$(addprefix aggregate/test_,few_searches machine shapes_in_ensembles sum) \
   $(addprefix interaction/test_,close contacts green jkr_parts jkr_shapes)))
 
-.PHONY: demo test test-all tests docs studies studies-full installed setup lint lock release clean
+.PHONY: demo test test-all tests compiled uncompiled docs studies studies-full installed setup lint lock release clean
 
 demo: installed
 	@mkdir -p results
 	@$(BIN)/roughmdr run pipelines/scenes/rubber_on_glass.toml -o results/rubber_on_glass.nc --fresh
 	@$(BIN)/roughmdr plot results/rubber_on_glass.nc -o results/rubber_on_glass.png --with-expected
 
-# Style and types, the docs and the tests, side by side.
+# Style and types beside the tests, then the docs, which find their code compiled, beside the uncompiled tests.
 test: setup
-	@$(MAKE) --no-print-directory -j3 lint docs tests
+	@$(MAKE) --no-print-directory -j2 lint compiled
+	@$(MAKE) --no-print-directory -j2 docs uncompiled
 
 # The tests, and those of kernels, sums and shapes again where nothing is compiled.
-tests: setup
+tests: compiled uncompiled
+
+compiled: setup
 	$(TESTS) --dist loadfile
+
+uncompiled: setup
 	NUMBA_DISABLE_JIT=1 $(TESTS) --dist loadfile $(UNCOMPILED)
 
 test-all: test
