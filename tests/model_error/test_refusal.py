@@ -47,7 +47,7 @@ def test_of_a_large_sweep_some_cells_are_checked_and_the_others_fail_with_the_re
     modulus = np.geomspace(3e6, 9e6, 250).tolist()
     sweep = {"mode": "zip", "material.modulus": modulus}
     few = {"asperities": {**SCENE["asperities"], "count": 20}, "path": {"separation": ["2 um", "0 um"]}, "batch": {}}
-    with patch.object(foresee, "_reason", wraps=foresee._reason) as checked:
+    with patch.object(foresee, "_foreseen", wraps=foresee._foreseen) as checked:
         rm.run(scene(sweep=sweep, **few))
     assert checked.call_count == 100
     modulus[1] = 3.0
