@@ -207,8 +207,7 @@ class Batch:
 
     def _round(self, ranges: Sequence[RunRange], display: Progress, stop: threading.Event, take: Sink) -> None:
         """Reuse what there is, compute what is missing, wait for what other processes compute."""
-        missing, told = self._reused(ranges, display, take), False
-        display.add(total=_count(missing))
+        missing, told = self._reused(ranges, display, take, counted=0), False
         while missing:
             tasks = split_into_tasks(self._plan, missing, self._variables, self._pool.workers, self._runs_per_task)
             undone = self._computed(tasks, display, stop, take)
@@ -216,19 +215,20 @@ class Batch:
                 self._writer.flush()
                 raise Interrupted(f"interrupted; {self._saved_message()}")
             others = [runs for task in undone for runs in task.ranges]
-            missing = self._reused(others, display, take)
-            display.add(total=_count(missing) - _count(others))
+            missing = self._reused(others, display, take, counted=_count(others))
             if missing and len(undone) == len(tasks):
                 if not told:
-                    display.tell(f"waits for {_count(missing)} runs that another process computes")
+                    count = _count(missing)
+                    display.tell(f"waits for {count} run{'s' * (count > 1)} that another process computes")
                 told = True
                 stop.wait(BETWEEN_LOOKS)
 
-    def _reused(self, ranges: Sequence[RunRange], display: Progress, take: Sink) -> list[RunRange]:
-        """Take those runs that there are by now; return the others."""
+    def _reused(self, ranges: Sequence[RunRange], display: Progress, take: Sink, *, counted: int) -> list[RunRange]:
+        """Take those runs that there are by now; return the others. So many were ``counted`` as runs to be done."""
         selected: list[tuple[int, int]] = []
         self._together.look(self._reusable)
         missing = self._reusable.missing(ranges, selected)
+        display.add(total=_count(missing) - counted)
         for result in self._reusable.read(selected):
             take(result)
             display.add(reused=result.realizations)
