@@ -4,21 +4,12 @@ from typing import TYPE_CHECKING, Any
 
 from numpy.typing import ArrayLike
 
-from roughmdr.analysis.description import describe
-from roughmdr.analysis.hysteresis import hysteresis
-from roughmdr.analysis.normalise import normalise
-from roughmdr.analysis.power_law import Between, fit_power_law
-from roughmdr.analysis.pull_off import pull_off
-from roughmdr.analysis.statistics import statistics
-from roughmdr.analysis.trust import trust
-from roughmdr.pictures.plot import plot
-from roughmdr.pictures.sketch import sketch
-from roughmdr.result.curves import result_of
-from roughmdr.result.interpolation import at_value
 from roughmdr.schema.wording import html_listing, listing
 
 if TYPE_CHECKING:
     import xarray as xr
+
+    from roughmdr.analysis.power_law import Between
 
 
 class Analysis:
@@ -50,9 +41,14 @@ class Analysis:
         self._dataset = dataset
 
     def __repr__(self) -> str:
+        from roughmdr.analysis.description import describe
+
         return listing(describe(self._dataset))
 
     def _repr_html_(self) -> str:
+        from roughmdr.analysis.description import describe
+        from roughmdr.pictures.sketch import sketch
+
         return html_listing(describe(self._dataset)) + sketch(self._dataset)
 
     def pull_off(self) -> "xr.Dataset":
@@ -75,6 +71,8 @@ class Analysis:
         >>> bool(off.force < 0.0), int(off["count"])
         (True, 4)
         """
+        from roughmdr.analysis.pull_off import pull_off
+
         return pull_off(self._dataset)
 
     def hysteresis(self) -> "xr.Dataset":
@@ -98,6 +96,8 @@ class Analysis:
         >>> bool((result.roughmdr.hysteresis().energy_lost > 0.0).all())
         True
         """
+        from roughmdr.analysis.hysteresis import hysteresis
+
         return hysteresis(self._dataset)
 
     def at_force(self, force: ArrayLike, *, branch: str = "loading", reference: bool = False) -> "xr.Dataset":
@@ -169,6 +169,8 @@ class Analysis:
         return self._at("separation", separation, branch)
 
     def _at(self, name: str, values: ArrayLike, branch: str, reference: bool = False) -> "xr.Dataset":
+        from roughmdr.result.interpolation import at_value
+
         return at_value(self._dataset, f"reference_{name}" if reference else name, values, branch)
 
     def normalise(self, theory: str) -> "xr.Dataset":
@@ -197,9 +199,13 @@ class Analysis:
         >>> result.roughmdr.normalise("gw").force.attrs["units"]
         '1'
         """
+        from roughmdr.analysis.normalise import normalise
+
         return normalise(self._dataset, theory)
 
-    def fit_power_law(self, y: str, x: str, *, branch: str = "loading", between: Between | None = None) -> "xr.Dataset":
+    def fit_power_law(
+        self, y: str, x: str, *, branch: str = "loading", between: "Between | None" = None
+    ) -> "xr.Dataset":
         """Return the power law y = coefficient (x/x0)^exponent of two curves, fitted in logarithms.
 
         Parameters
@@ -229,6 +235,8 @@ class Analysis:
         >>> bool(law.exponent > 0.0), law.coefficient.attrs["units"]
         (True, 'm2')
         """
+        from roughmdr.analysis.power_law import fit_power_law
+
         return fit_power_law(self._dataset, y, x, branch, between)
 
     def statistics(self) -> "xr.Dataset":
@@ -250,6 +258,8 @@ class Analysis:
         >>> bool(abs(result.roughmdr.statistics().force_mean - result.force.mean("realization")).max() < 1e-15)
         True
         """
+        from roughmdr.analysis.statistics import statistics
+
         return statistics(self._dataset)
 
     def trust(self) -> "xr.Dataset":
@@ -271,6 +281,8 @@ class Analysis:
         >>> "force within about" in result.roughmdr.trust().attrs["trust"]
         True
         """
+        from roughmdr.analysis.trust import trust
+
         return trust(self._dataset)
 
     def plot(self, *args: Any, **kwargs: Any) -> Any:
@@ -281,5 +293,8 @@ class Analysis:
         >>> [axes.get_ylabel() for axes in result.roughmdr.plot(variables="contact_count").axes]
         ['contact count']
         """
+        from roughmdr.pictures.plot import plot
+        from roughmdr.result.curves import result_of
+
         result_of(self._dataset)
         return plot(self._dataset, *args, **kwargs)

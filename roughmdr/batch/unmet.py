@@ -93,7 +93,7 @@ def _force(cell: Cell, ensemble: Ensemble, number: int) -> Floats:
     one = slice(number, number + 1)
     parameters = {name: column[one] for name, column in ensemble.parameters.items()}
     alone = replace(ensemble, height=ensemble.height[one], parameters=parameters)
-    path = cell.controlled.over(cell.path)  # of the flat: over usual asperities where their force decides on it
+    path = cell.controlled.over(cell.path)  # the flat stands where usual asperities decide
     try:
         return simulate_ensemble(cell.scene, path, alone, [path.watched]).variables[path.watched]
     except RoughmdrError:

@@ -44,7 +44,7 @@ def assembled(command: str, fit: Fitted, *, posterior: bool = False) -> Labelled
         if draws is not None:
             values, unit = np.vectorize(parameter.value)(draws.x[:, :, i]), spelled_in_results(parameter.unit)
             drawn = f"draws of {parameter.key} from the posterior"
-            variables[f"{parameter.name}_posterior"] = _array(values, unit, drawn, ("chain", "draw"))  # as ArviZ
+            variables[f"{parameter.name}_posterior"] = _array(values, unit, drawn, ("chain", "draw"))  # names of ArviZ
     for name, matrix in (("covariance", known.covariance), ("correlation", correlation_of(known.influence))):
         variables[name] = _array(matrix, "1", f"{name} of the numbers that were fitted", _PAIR)
     variables["covariance"].attrs["comment"] = _COVARIED

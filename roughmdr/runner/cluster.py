@@ -116,7 +116,7 @@ def connected(address: str, tls: Mapping[str, str] | None) -> Iterator[Cluster]:
             "clone of roughmdr"
         ) from None
     try:
-        security = Security(**tls, require_encryption=True) if tls else Security()  # as dask is configured
+        security = Security(**tls, require_encryption=True) if tls else Security()  # dask's own settings else
         context = security.get_connection_args("client").get("ssl_context")
         secure = address.startswith("tls://")
         if security.require_encryption and not secure:

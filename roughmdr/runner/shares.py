@@ -35,7 +35,7 @@ def compute_share(
     with begun(plan, target, share, resume=resume) as beginning:
         ranges = share.of(beginning.rounds.begin())
         with at_work(beginning, backend, command, resume=resume, quiet=quiet, assembled=False) as batch:
-            failures = batch.keep(ranges, quiet=quiet)  # of none too: an earlier scene may have had runs in the share
+            failures = batch.keep(ranges, quiet=quiet)  # also without runs: an earlier scene may have had some
             return share.folder(destination(target)) if ranges else None, failures
 
 

@@ -87,7 +87,7 @@ class _Sections(Section):
         """E* [Pa] (H 43)."""
         if self.material.effective_modulus is not None:
             return self.material.effective_modulus
-        assert self.bodies is not None  # as ``MaterialSection`` validates
+        assert self.bodies is not None  # ``MaterialSection`` makes sure
         return effective_modulus(*self.bodies)
 
     @property
