@@ -83,7 +83,7 @@ def _common_scene(stores: list[CheckpointStore]) -> str:
         raise StoreError(f"{folders}: are parts of different scenes; compute one kind again")
     for scene in scenes:
         return scene
-    raise StoreError(f"{' and '.join(str(store.folder) for store in stores)}: no run of these parts is kept yet")
+    raise StoreError(f"{stores[0].folder}: no run of this part, nor of another, is kept yet")
 
 
 def _check_complete(beginning: Beginning, target: Path, total: int, stores: list[CheckpointStore]) -> None:

@@ -126,6 +126,8 @@ def test_parts_that_are_missing_or_not_done_are_named(tmp_path: Path) -> None:
     write_scene(tmp_path, SWEPT)
     out = tmp_path / "out.nc"
     assert f"no part of it is here; expected folders such as {out}.1-of-8.parts" in refused(roughmdr("join", out))
+    Share(1, 8).folder(out).mkdir()
+    assert "1-of-8.parts: no run of this part, nor of another, is kept yet" in refused(roughmdr("join", out))
     for number in (1, 3):
         assert compute(tmp_path, f"{number}/4").exit_code == 0
     told = roughmdr("info", out)
