@@ -2,11 +2,8 @@
 
 from typing import TYPE_CHECKING
 
-import numpy as np
-from numpy.typing import NDArray
-
-from roughmdr.numerics.arguments import Floats
 from roughmdr.result.curves import Branch, apply, curve, result_of
+from roughmdr.result.loops import loop_energies
 from roughmdr.variables import BRANCHES, LATERAL, SEPARATION
 
 if TYPE_CHECKING:
@@ -39,7 +36,7 @@ def hysteresis(dataset: "xr.Dataset") -> "xr.Dataset":
     separation = -curve(result, LATERAL.name) if lateral else curve(result, SEPARATION.name)
     loading, unloading = (Branch(result, branch).wanted[1:] for branch in BRANCHES)
     energies = apply(
-        _energies, force, separation, core=[["step"]] * 2, out=[[]] * 6, loading=loading, unloading=unloading
+        loop_energies, force, separation, core=[["step"]] * 2, out=[[]] * 6, loading=loading, unloading=unloading
     )
     found: dict[str, xr.DataArray] = {}
     names = _LATERAL_NAMES if lateral else _NAMES
@@ -53,31 +50,3 @@ def hysteresis(dataset: "xr.Dataset") -> "xr.Dataset":
             found[name] = curve(result, name).isel(step=-1)
     titled = {"title": dataset.attrs["title"]} if "title" in dataset.attrs else {}
     return xr.Dataset(found, attrs=titled | {"comment": _MISSING})
-
-
-def _energies(
-    force: Floats, separation: Floats, *, loading: NDArray[np.bool_], unloading: NDArray[np.bool_]
-) -> tuple[Floats, ...]:
-    """Return the work of loading, of unloading, and their difference, each followed by its error.
-
-    By the trapezoid rule. To leave a step out takes away the triangle that it makes with its neighbours. The error is
-    a third of the larger change where every other step is left out, as that of smooth curves is, and the root of the
-    sum of the squares of the triangles, for jumps: one between two steps makes a triangle of at least its own error.
-    """
-    force, separation = np.broadcast_arrays(force, separation)
-    work = 0.5 * (force[..., 1:] + force[..., :-1]) * np.diff(separation, axis=-1)
-    rise, run = np.diff(force, axis=-1), np.diff(separation, axis=-1)
-    triangle = 0.5 * (run[..., :-1] * rise[..., 1:] - run[..., 1:] * rise[..., :-1])
-    inner = [branch[:-1] & branch[1:] for branch in (loading, unloading)]
-    even = np.arange(triangle.shape[-1]) % 2 == 0
-
-    def error(steps: NDArray[np.bool_]) -> Floats:
-        changes = (np.abs(_sum(triangle, steps & every_other)) for every_other in (even, ~even))
-        return np.asarray(np.maximum(*changes) / 3.0 + np.sqrt(_sum(triangle * triangle, steps)))
-
-    done, regained = -_sum(work, loading), _sum(work, unloading)
-    return done, error(inner[0]), regained, error(inner[1]), done - regained, error(inner[0] | inner[1])
-
-
-def _sum(values: Floats, chosen: NDArray[np.bool_]) -> Floats:
-    return np.asarray(values[..., chosen].sum(axis=-1))

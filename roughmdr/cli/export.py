@@ -20,7 +20,7 @@ from roughmdr.cli.terminal import Command, print_note, print_text
     default="pressure",
     show_default=True,
     metavar="QUANTITY",
-    help="pressure, area or whole force over the overclosure, conductance or tangential over the pressure, or nodes.",
+    help="pressure, area, whole force, loss over the overclosure; conductance, tangential over the pressure; nodes.",
 )
 @click.option("--units", default="", metavar="NAMES", help='Length, force and stress, as "mm,N,MPa". Default: SI.')
 @click.option("--branch", default="loading", show_default=True, metavar="BRANCH", help="loading or unloading.")

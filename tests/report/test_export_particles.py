@@ -79,7 +79,8 @@ def _cells(r: Floats) -> Iterator[tuple[float, float]]:
 
 def test_a_table_in_csv_has_the_same_law_over_the_overclosure(file: Path) -> None:
     table = of_csv(exported(file, "law.csv", to="csv", branch="unloading"))
-    assert list(table) == ["overclosure [m]", "force [N]", "energy [N m]", "separation [m]", "standard_error [N]"]
+    assert list(table)[:5] == ["overclosure [m]", "force [N]", "energy [N m]", "separation [m]", "standard_error [N]"]
+    assert list(table)[5:] == ["stiffness [N/m]", "stiffness_error [N/m]"]
     x, force, energy, separation = table.to_numpy().T[:4]
     np.testing.assert_array_equal(separation, -x)
     work = [np.trapezoid(force[: end + 1], x[: end + 1]) for end in range(x.size)]
@@ -90,6 +91,21 @@ def test_a_table_in_csv_has_the_same_law_over_the_overclosure(file: Path) -> Non
     assert "static inline double ROUGH_FORCE(" in exported(file, "law.h", to="c", branch="unloading").read_text()
     r, from_near, _ = of_lammps(exported(file, "same.table", branch="unloading"))
     assert np.interp(APART, r, from_near) == pytest.approx(np.interp(0.0, x, energy), abs=ERROR * np.abs(energy).max())
+
+
+@pytest.mark.few(1)
+@pytest.mark.parametrize("branch", ["loading", "unloading"])
+def test_the_stiffness_is_that_of_a_finer_path_to_the_stated_error(file: Path, branch: str) -> None:
+    table = of_csv(exported(file, "stiff.csv", to="csv", branch=branch, units="um,nN"))
+    x, stiffness, error = table[["overclosure [um]", "stiffness [nN/um]", "stiffness_error [nN/um]"]].to_numpy().T
+    far, _ = curve(file, "loading")
+    fine = {"separation": np.linspace(far[0], far[-1], 20 * (far.size - 1) + 1).tolist(), "unload": True}
+    rm.run(scene(path=fine, batch={"estimator": "expected"}), file.parent / "finer.nc", resume=False)
+    h, law = curve(file.parent / "finer.nc", branch)
+    ordered = np.argsort(-h)
+    exact = np.interp(x, -h[ordered] / 1e-6, np.gradient(law[ordered], -h[ordered], edge_order=2)) / 1e-3
+    assert (np.abs(stiffness - exact) <= error)[1:].all()  # contact is made, or lost, at the first
+    assert np.median(error / np.abs(exact)) < 0.02
 
 
 def test_the_header_tells_loss_tension_and_stiffness(file: Path) -> None:

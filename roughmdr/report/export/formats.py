@@ -49,7 +49,7 @@ class Format(NamedTuple):
 _INCLUDED = "for *INCLUDE under a *SURFACE INTERACTION"
 _AS_CALLED = "a function of what it is called with, by default the time; constant beyond its ends"
 _BY_NAME = "a table that real constants of contact elements take as %NAME%"
-_ALL = dict.fromkeys(("pressure", "force", "conductance", "area", "tangential", "nodes"), "")
+_ALL = dict.fromkeys(("pressure", "force", "loss", "conductance", "area", "tangential", "nodes"), "")
 _PAIR = "{y:.12e}, {x:.12e}"  # numbers in the 20 characters that CalculiX reads
 _FUNCTION = """\
 [Functions]

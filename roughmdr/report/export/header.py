@@ -21,13 +21,21 @@ from roughmdr.variables import CONDUCTANCES, TIME
 
 
 def origin_lines(cell: ResultView, words: str) -> Iterator[tuple[str, str]]:
-    """Yield the scene, the swept values in ``words``, the key of the cell and the version of a result of one cell."""
+    """Yield the scene, the swept values in ``words``, the key of one cell and the version of a result."""
     yield "scene", cell.attrs["title"]
     if words:
         yield "cell", words
-    if "cell_key" in cell.coordinates:
+    if "cell_key" in cell.coordinates and not cell.sweep:
         yield "key", str(cell.coordinates["cell_key"].values.item())
     yield "made by", f"{cell.attrs['source']}, seed {cell.attrs['seed']}"
+
+
+def law_lines(result: ResultView) -> Iterator[tuple[str, str]]:
+    """Yield how a law was made of realisations, and its numerical error."""
+    runs = result.realizations
+    yield "law", "expected law" if result.estimator == "expected" else f"mean of {runs} realisation{'s' * (runs > 1)}"
+    if result.known("numerical_error").size:
+        yield "numerical error", f"force within {result.largest('numerical_error'):.2g} of the largest"
 
 
 def rounded_up(error: float) -> str:
@@ -39,8 +47,7 @@ def table_lines(
     cell: ResultView, table: Table, quantity: Quantity, law: Law, units: UnitSystem
 ) -> Iterator[tuple[str, str]]:
     """Yield what the numbers of a table are, and their errors."""
-    runs = cell.realizations
-    yield "law", "expected law" if cell.estimator == "expected" else f"mean of {runs} realisation{'s' * (runs > 1)}"
+    yield from law_lines(cell)
     yield "branch", table.law.rule
     variable, unit = law.source.variable, units.of(law.source.dimension).name
     per_area = "" if quantity.whole or variable in ("pressure", "contact_fraction") else " per nominal area"
@@ -62,8 +69,6 @@ def table_lines(
     )
     if math.isfinite(table.statistical_error):
         yield "statistical error", f"of the mean up to {table.statistical_error:.2g} of the largest value"
-    if cell.known("numerical_error").size:
-        yield "numerical error", f"force within {cell.largest('numerical_error'):.2g} of the largest"
     if quantity.name == "pressure" and (joint := hyperbola(law.separation, law.pressure)):
         yield (
             "Barton-Bandis",
@@ -73,7 +78,7 @@ def table_lines(
             f"{joint.misfit:.2g} of the largest",
         )
     if quantity.whole:
-        yield from whole_lines(cell, table.law, law, quantity, units)
+        yield from whole_lines(cell, table.law, law, units)
     if table.law.departure > 0.0:
         departure = f"{table.law.departure / pressure.size:.3g} {pressure.name}"
         yield "departure", f"up to {departure} at steps that a load jumps over"

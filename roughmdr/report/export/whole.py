@@ -4,20 +4,19 @@ LAMMPS reads forces F at distances r of two centres. Its ``pair_style table line
 evenly spaced in r^2, takes F/r for linear in r^2; ``fix wall/table`` reads the same file for the distance from a wall.
 """
 
-from collections.abc import Iterator
-from itertools import pairwise
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 
 from roughmdr.errors import StoreError
 from roughmdr.numerics.arguments import Floats
-from roughmdr.report.export.law import Law, Quantity
+from roughmdr.report.export.law import Law
 from roughmdr.report.export.stable import StablePart
 from roughmdr.report.export.text import Column
 from roughmdr.report.export.units import UnitSystem
+from roughmdr.result.loops import loops_of
 from roughmdr.result.view import ResultView
 from roughmdr.schema.units import format_quantity
-from roughmdr.variables import SEPARATION
 
 _DOUBLINGS = 8
 """How often the number of points is doubled at most, from that of the steps."""
@@ -63,12 +62,30 @@ def even_points(x: Floats, y: Floats, tolerance: Floats, distance: float) -> tup
     raise StoreError(f"{kept}: ask for a larger one, or make the steps of the path more, or more even")
 
 
-def columns_of(part: StablePart, units: UnitSystem, distance: float | None) -> tuple[Column, ...]:
+def slopes(x: Floats, y: Floats) -> tuple[Floats, Floats]:
+    """Return the slope of a curve over the neighbours of each point, and by how much it is off, as estimated.
+
+    That is the largest difference to the slope over the second neighbours, of a point and both beside it: of a smooth
+    curve three times the error. At the ends the difference is added, which cancels the first order.
+    """
+    points = np.arange(x.size)
+    sides = ((np.maximum(points - far, 0), np.minimum(points + far, x.size - 1)) for far in (1, 2))
+    near, wide = ((y[high] - y[low]) / (x[high] - x[low]) for low, high in sides)
+    off = np.pad(near - wide, 1)
+    near[[0, -1]] += off[[1, -2]]
+    return near, np.max(np.abs([off[1:-1], off[2:], off[:-2]]), axis=0)
+
+
+def columns_of(
+    part: StablePart, slope: Sequence[Floats], units: UnitSystem, distance: float | None
+) -> tuple[Column, ...]:
     """Return the columns of a table of forces: overclosure, or from near to far the distance, force, energy, others.
 
-    The energy is the integral of the force as it is read between the points, 0 where contact is lost.
+    The energy is the integral of the force as it is read between the points, 0 where contact is lost. ``slope`` is that
+    of the force over the overclosure [N/m], and its error: the stiffness.
     """
-    x, force, length, unit = part.overclosure, part.value, units.length, units.force
+    length, unit = units.length, units.force
+    x, force, stiffness = part.overclosure, part.value, unit.size / length.size
     r = np.ones_like(x) if distance is None else distance - x
     slices = np.diff(x) * (r[1:] + r[:-1]) * (force[1:] / r[1:] + force[:-1] / r[:-1]) / 4.0
     energy = np.concatenate([[0.0], np.cumsum(slices)])
@@ -79,12 +96,12 @@ def columns_of(part: StablePart, units: UnitSystem, distance: float | None) -> t
         Column("energy", f"{unit.name} {length.name}", energy[::order] / (unit.size * length.size)),
         Column("separation", length.name, -x[::order] / length.size),
         Column("standard_error", unit.name, part.standard_error[::order] / unit.size),
+        Column("stiffness", f"{unit.name}/{length.name}", slope[0][::order] / stiffness),
+        Column("stiffness_error", f"{unit.name}/{length.name}", slope[1][::order] / stiffness),
     )
 
 
-def whole_lines(
-    cell: ResultView, part: StablePart, law: Law, quantity: Quantity, units: UnitSystem
-) -> Iterator[tuple[str, str]]:
+def whole_lines(cell: ResultView, part: StablePart, law: Law, units: UnitSystem) -> Iterator[tuple[str, str]]:
     """Yield what a code of particles needs to know of a law: its ends, tension, stiffness and loss."""
     length, unit = units.length, units.force
     x, force, names = part.overclosure / length.size, part.value / unit.size, f"{unit.name} {length.name}"
@@ -94,22 +111,15 @@ def whole_lines(
     if force[low] < 0.0:
         deepest = f"the deepest at a step is {-law.value.min() / unit.size:.9g} {unit.name}"
         yield "tension", f"{-force[low]:.9g} {unit.name} at {x[low]:.9g} {length.name}; {deepest}"
-    yield "stiffness", f"up to {np.max(np.diff(force) / np.diff(x)):.4g} {unit.name}/{length.name}, for the time step"
+    most = f"up to {np.max(np.diff(force) / np.diff(x)):.4g} {unit.name}/{length.name} between the points"
+    column = "a column of csv and json has the slope over the neighbouring steps, and its error, estimated from these"
+    yield "stiffness", f"{most}, for the time step; {column}, not that of the mean over the realisations"
+    energy = unit.size * length.size
     losses = [
-        f"{lost:.4g} {names} to {to:.6g} {length.name} (loading takes {on:.4g})" for to, lost, on in _loops(cell, units)
+        f"{loop.lost / energy:.4g} {names} to {-loop.closest / length.size:.6g} {length.name} "
+        f"(loading takes {loop.work / energy:.4g})"
+        for loop in loops_of(cell)
+        if np.isfinite(loop.lost)
     ]
     if losses:
         yield "loss", f"{', '.join(losses)}, there and back; a table has no memory: loading and unloading are two"
-
-
-def _loops(cell: ResultView, units: UnitSystem) -> Iterator[tuple[float, float, float]]:
-    """Yield of each loading that its unloading undoes the overclosure reached, the energy lost, and what it takes."""
-    length, energy = units.length.size, units.force.size * units.length.size
-    separation, force = cell.coordinates[SEPARATION.name].values.reshape(-1), cell.mean("force")[0].reshape(-1)
-    for there, back in pairwise(cell.legs):
-        returns = separation[back.steps[-1]] >= separation[there.steps[0]]
-        if (there.branch, back.branch) == ("loading", "unloading") and returns:
-            joined = np.concatenate([there.steps[-1:], back.steps])
-            taken, regained = (np.trapezoid(force[steps], -separation[steps]) for steps in (there.steps, joined))
-            if np.isfinite([taken, regained]).all():
-                yield -float(separation[joined].min()) / length, max(taken + regained, 0.0) / energy, taken / energy

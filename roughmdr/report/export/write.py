@@ -51,7 +51,7 @@ class Export:
 
     def __post_init__(self) -> None:
         _check("to", self.to, list(FORMATS))
-        _check("quantity", self.quantity, [*QUANTITIES, "nodes"])
+        _check("quantity", self.quantity, [*QUANTITIES, "loss", "nodes"])
         _check("branch", self.branch, list(BRANCHES))
         if not _LEAST_ERROR <= self.error <= MOST_ERROR:
             raise StoreError(f"error is {self.error!r}; it must be from {_LEAST_ERROR:g} to {MOST_ERROR:g}")
@@ -96,8 +96,9 @@ def export(result: "str | Path | xr.Dataset", out: str | Path, *, to: str, fresh
         Whether to replace a file of any kind at ``out``.
     **options
         ``quantity``: "pressure" (default) or "area" over the overclosure, "conductance" or "tangential" stiffness over
-        the pressure, each per nominal area; "force", the whole law of a body; or "nodes", a few asperities whose sum
-        is the expected law. ``units``: names of length, force and stress such as "mm,N,MPa"; SI unless given.
+        the pressure, each per nominal area; "force", the whole law of a body; "loss", the energy lost by each loop of
+        the path, or of each cell of a sweep of path.separation.stop; or "nodes", a few asperities whose sum is the
+        expected law. ``units``: names of length, force and stress such as "mm,N,MPa"; SI unless given.
         ``branch``: "loading" (default) or "unloading". ``error``: that of lines between the points of the table, over
         the largest value and over the value itself where that is within a decade of it (1e-3). ``distance`` [m]: for
         lammps, that of two centres, or of one from a wall, at zero separation. ``select``: a dictionary such as
@@ -149,17 +150,23 @@ def write(document: Document, path: Path, asked: Export) -> None:
 
 def document_of(result: ResultView, file: Path | None, asked: Export) -> tuple[Document, tuple[str, ...]]:
     """Return what is to be written of a result, which was read from ``file`` unless that is None, and warnings."""
-    units = UnitSystem.read(asked.units)
+    units, centres = UnitSystem.read(asked.units), asked.centres
     if asked.quantity == "nodes":
         from roughmdr.report.export.nodes import nodes_document
 
         return nodes_document(result, file, asked.select, asked.error, units), ()
+    if asked.quantity == "loss":
+        from roughmdr.report.export.loss import loss_document
+
+        return loss_document(result, asked.select, units), ()
     cell, words = select(result, asked.select)
     quantity = QUANTITIES[asked.quantity]
     law = law_of(cell, quantity, asked.branch)
-    form, centres = asked.format, asked.centres
+    form = asked.format
     table = table_of(law, quantity, asked.branch, error=asked.error, with_tension=form.with_tension, distance=centres)
-    columns = columns_of(table.law, units, centres) if quantity.whole else _columns(table, law, quantity, units)
+    columns = (
+        columns_of(table.law, table.slope, units, centres) if quantity.whole else _columns(table, law, quantity, units)
+    )
     _check_fit(table, quantity, units, asked)
     header = dict(origin_lines(cell, words)) | dict(table_lines(cell, table, quantity, law, units))
     if note := form.quantities[asked.quantity]:

@@ -1,0 +1,134 @@
+"""Energy lost over the overclosure that loops reach: against other paths, finer ones, and the jumps' own account."""
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pandas as pd
+import pytest
+import xarray as xr
+from command import roughmdr
+from exports import header_of, of_csv, of_json
+from scenes import scene
+
+import roughmdr as rm
+
+FAR = 6.0
+STOPS = [1.0, 0.5, 0.0]
+
+
+def swept() -> dict[str, Any]:
+    path = {"separation": {"start": f"{FAR} sigma", "stop": "0 sigma", "steps": 120}, "unload": True}
+    sweep = {"path.separation.stop": [f"{stop} sigma" for stop in STOPS]}
+    return scene(path=path, batch={"estimator": "expected"}, sweep=sweep)
+
+
+def looped(*depths: float) -> dict[str, Any]:
+    loops = [np.concatenate([np.linspace(FAR, deep, 120), np.linspace(deep, FAR, 120)]) for deep in depths]
+    return {"separation": [f"{each} sigma" for each in np.concatenate(loops)]}
+
+
+def losses(result: "xr.Dataset | Path", out: Path, **options: Any) -> pd.DataFrame:
+    rm.export(result, out, to="csv", quantity="loss", **options)
+    return of_csv(out)
+
+
+def test_a_sweep_of_the_closest_separation_gives_a_row_each(tmp_path: Path) -> None:
+    result = rm.run(swept(), tmp_path / "loops.nc")
+    table = losses(result, tmp_path / "loss.csv")
+    assert [*table] == [
+        "overclosure [m]",
+        "energy_lost [N m]",
+        "energy_lost_error [N m]",
+        "standard_error [N m]",
+        "work_of_loading [N m]",
+    ]
+    own = result.isel(realization=0).roughmdr.hysteresis()
+    np.testing.assert_allclose(table["overclosure [m]"], -result.separation.min("step"), rtol=1e-12)
+    np.testing.assert_allclose(table["energy_lost [N m]"], own.energy_lost, rtol=1e-12)
+    np.testing.assert_allclose(table["energy_lost_error [N m]"], own.energy_lost_interpolation_error, rtol=1e-12)
+    np.testing.assert_allclose(table["work_of_loading [N m]"], own.work_of_loading, rtol=1e-12)
+    assert np.isnan(table["standard_error [N m]"]).all()
+    one = losses(result, tmp_path / "one.csv", select={"path.separation.stop": 0.5})
+    np.testing.assert_array_equal(one.to_numpy()[:, [0, 1, 2, 4]], table.to_numpy()[1:2, [0, 1, 2, 4]])
+
+
+@pytest.mark.large
+def test_loops_of_one_path_lose_what_paths_of_their_own_do(tmp_path: Path) -> None:
+    alone = losses(rm.run(swept()), tmp_path / "alone.csv")
+    together = losses(
+        rm.run(scene(path=looped(*STOPS[::-1]), batch={"estimator": "expected"})), tmp_path / "together.csv"
+    )
+    np.testing.assert_allclose(together, alone, rtol=1e-6)
+
+
+def test_the_stated_errors_hold_of_the_mean_of_realisations(tmp_path: Path) -> None:
+    """The jumps dissipate what a loop loses; realisations of another seed have another mean, within standard errors."""
+    path = {"separation": {"start": f"{FAR} sigma", "stop": "0 sigma", "steps": 120}, "unload": True}
+    made = {"batch": {"realizations": 30}, "path": path, "output": {"variables": ["force", "dissipated_energy"]}}
+    result = rm.run(scene(**made))
+    (row,) = losses(result, tmp_path / "loss.json.csv").to_numpy()
+    dissipated = result.dissipated_energy.isel(step=-1)
+    assert abs(row[1] - float(dissipated.mean())) <= row[2]
+    runs = result.roughmdr.hysteresis().energy_lost
+    assert row[3] == pytest.approx(float(runs.std(ddof=1)) / 30**0.5, rel=1e-9)
+    assert row[1] == pytest.approx(float(runs.mean()), rel=1e-9)
+
+
+def test_units_formats_and_the_command(tmp_path: Path) -> None:
+    rm.run(swept(), tmp_path / "loops.nc")
+    si = losses(tmp_path / "loops.nc", tmp_path / "si.csv")
+    told = roughmdr(
+        *("export", tmp_path / "loops.nc", "-o", tmp_path / "um.json", "--to", "json"),
+        *("--quantity", "loss", "--units", "um,nN,kPa"),
+    )
+    assert "points       3 loops" in told.stdout
+    table = of_json(tmp_path / "um.json")
+    assert table["units"]["energy_lost"] == "nN um"
+    np.testing.assert_allclose(table["columns"]["energy_lost"], si["energy_lost [N m]"] / 1e-15, rtol=1e-12)
+    np.testing.assert_allclose(table["columns"]["overclosure"], si["overclosure [m]"] / 1e-6, rtol=1e-12)
+    assert "energy_lost_error is that of the trapezoid rule" in header_of(tmp_path / "si.csv")
+
+
+def test_a_cell_that_was_not_computed_is_shown_as_unknown(tmp_path: Path) -> None:
+    result = rm.run(swept())
+    whole = losses(result, tmp_path / "whole.csv").to_numpy()
+    result.force[1], result.status[1] = np.nan, 2
+    table = losses(result, tmp_path / "missing.csv").to_numpy()
+    np.testing.assert_array_equal(table[[0, 2]], whole[[0, 2]])
+    assert table[1, 0] == whole[1, 0]
+    assert np.isnan(table[1, 1:]).all()
+    result.force[:], result.status[:] = np.nan, 2
+    with pytest.raises(rm.StoreError, match="the force is not known at all steps of any loop"):
+        losses(result, tmp_path / "none.csv")
+
+
+def test_contacts_that_yield_remember_loops_before(tmp_path: Path) -> None:
+    yields = {"adhesion": None, "plasticity": {"yield_strength": "50 kPa"}, "batch": {"realizations": 2}}
+    made = rm.run(scene(**yields, path=looped(1.0, 1.0)))
+    first, again = losses(made, tmp_path / "twice.csv")["energy_lost [N m]"]
+    assert first > 0.0
+    assert again <= 1e-9 * first
+    assert "memory: contacts yield: of several loops of one path" in header_of(tmp_path / "twice.csv")
+
+
+@pytest.mark.parametrize(
+    ("changes", "says"),
+    [
+        ({"path": {"separation": ["3 um", "2 um"]}}, "no loading of the path is undone by an unloading"),
+        ({"path": {"separation": ["3 um", "2 um", "2.5 um"]}}, "no loading of the path is undone by an unloading"),
+        ({"path": {"force": {"start": "0 N", "stop": "1 mN", "steps": 3}, "unload": True}}, "over the separation; run"),
+        ({"sweep": {"adhesion.work": ["10 mJ/m^2", "20 mJ/m^2"]}}, r"over adhesion_work \(2\): select one"),
+        ({"output": {"variables": ["contact_area"]}}, "needs the force over the separation"),
+    ],
+)
+def test_what_has_no_loop_is_refused(tmp_path: Path, changes: dict[str, Any], says: str) -> None:
+    path = {"separation": {"start": "3 um", "stop": "2 um", "steps": 4}, "unload": True}
+    result = rm.run(scene(**{"path": path, "batch": {"realizations": 1}} | changes))
+    with pytest.raises(rm.StoreError, match=says):
+        losses(result, tmp_path / "none.csv")
+
+
+def test_codes_and_distances_are_refused(tmp_path: Path) -> None:
+    with pytest.raises(rm.StoreError, match="lammps has no table of quantity 'loss'; csv, json have"):
+        rm.export("none.nc", tmp_path / "none.table", to="lammps", quantity="loss")
