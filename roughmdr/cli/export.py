@@ -20,7 +20,7 @@ from roughmdr.cli.terminal import Command, print_note, print_text
     default="pressure",
     show_default=True,
     metavar="QUANTITY",
-    help="pressure, area, whole force, loss over the overclosure; conductance, tangential over the pressure; nodes.",
+    help="pressure, area, force or loss over the overclosure, conductance or tangential over the pressure, or nodes.",
 )
 @click.option("--units", default="", metavar="NAMES", help='Length, force and stress, as "mm,N,MPa". Default: SI.')
 @click.option("--branch", default="loading", show_default=True, metavar="BRANCH", help="loading or unloading.")
@@ -38,8 +38,9 @@ def export(result: Path, output: Path, selected: tuple[str, ...], fresh: bool, *
     """Write the law of RESULT as a table for a finite-element code, or a function in C.
 
     It is the mean law per nominal area over the realisations, or the expected one, from first touch on, with as few
-    points as the error takes; its header says within which errors it holds. "nodes" are a few asperities whose sum is
-    the expected law. An exported file that is there already is replaced, since RESULT gives it again.
+    points as the error takes; its header says within which errors it holds. "force" is the whole law of a body, "loss"
+    the energy that loops of the path lose, "nodes" are a few asperities whose sum is the expected law. An exported
+    file that is there already is replaced, since RESULT gives it again.
     """
     from roughmdr.report.export.write import Export, check_export, document_of, write
 

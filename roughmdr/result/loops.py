@@ -12,47 +12,58 @@ from roughmdr.numerics.arguments import Floats
 from roughmdr.result.view import ResultView
 from roughmdr.variables import SEPARATION
 
+_CLOSED = 1e-9  # difference of separations that are equal, over the largest on the path
+
 
 class Loop(NamedTuple):
-    """A loading with the unloading that undoes it, in the mean of one cell."""
+    """A loading with the unloading back to where it began, in the mean of one cell."""
 
+    steps: slice
+    start: float
+    """Separation where the loading begins [m]."""
     closest: float
-    """Separation at which it turns [m]."""
-    lost: float
-    """Work of the loading less what the unloading gives back [J], at least 0."""
+    """Separation where the loop turns [m]."""
+    energy_lost: float
+    """Work of the loading less what the unloading gives back [J]."""
     error: float
-    """How far the trapezoid rule may be off in ``lost`` [J]."""
-    standard_error: float
-    """Standard error of ``lost`` over the realisations [J]; NaN of one, and of a result of statistics."""
-    work: float
-    """Work of the loading [J]."""
+    """How far ``energy_lost`` may be off [J], by the trapezoid rule and by contacts at the ends of the loop."""
+    work_of_loading: float
+    """[J]"""
 
 
-def loops_of(result: ResultView, cell: tuple[int, ...] = ()) -> Iterator[Loop]:
-    """Yield the loops of a cell, over the separation, whose unloading goes back to where the loading began, or beyond.
+def loops_of(result: ResultView, cell: tuple[int, ...]) -> Iterator[Loop]:
+    """Yield the loops of a cell over the separation; energies are NaN where the force is not known at all steps.
 
-    NaN where the force is not known at all of its steps.
+    A loop begins at the turning point before its loading. Contacts that are there at its ends hold energy, of which the
+    error counts the force times the way.
     """
     separation, force = result.over_steps(SEPARATION.name)[cell], result.mean("force")[0][cell].reshape(-1)
+    margin = _CLOSED * float(np.nanmax(np.abs(separation)))
     for there, back in pairwise(result.legs):
-        returns = separation[back.steps[-1]] >= separation[there.steps[0]]
-        steps = slice(there.steps[0], back.steps[-1] + 1)
-        if (there.branch, back.branch) == ("loading", "unloading") and returns:
-            inward = np.arange(steps.stop - steps.start - 1) < there.steps.size - 1
-            branches = {"loading": inward, "unloading": ~inward}
-            work, _, _, _, lost, error = map(float, loop_energies(force[steps], separation[steps], **branches))
-            spread = _standard_error(result, cell, steps)
-            yield Loop(float(separation[steps].min()), max(lost, 0.0), error, spread, work)
+        first, turn = max(int(there.steps[0]) - 1, 0), int(there.steps[-1])
+        within = back.steps[separation[back.steps] <= separation[first] + margin]
+        closed = separation[back.steps[-1]] >= separation[first] - margin
+        if there.branch == "loading" and turn > first and within.size and closed:
+            steps = slice(first, int(within[-1]) + 1)
+            inward = np.arange(first, steps.stop - 1) < turn
+            h, load = separation[steps], force[steps]
+            work, _, _, _, lost, error = map(float, loop_energies(load, h, loading=inward, unloading=~inward))
+            error += float((abs(load[0]) + abs(load[-1])) * (h[0] - h.min()))
+            lost = max(lost, 0.0) if abs(lost) <= error else lost  # no loop gains energy
+            yield Loop(steps, float(h[0]), float(h.min()), lost, error, work)
 
 
-def _standard_error(result: ResultView, cell: tuple[int, ...], steps: slice) -> float:
-    """Return the standard error of the energy lost along ``steps``, a sum of the forces of each realisation."""
+def standard_error_of(result: ResultView, cell: tuple[int, ...], loop: Loop) -> float:
+    """Return the standard error [J] of the energy lost, over the realisations; NaN of one, and of statistics.
+
+    It is that of a sum of the forces along the loop.
+    """
     if "force" not in result.variables:
         return float("nan")
     runs, known = result.variables["force"].values[cell], result.done[cell]
-    run = np.pad(np.diff(result.over_steps(SEPARATION.name)[cell][steps]), 1)
-    weights = -0.5 * (run[1:] + run[:-1])
-    return float(mean_and_error((runs[..., steps] @ weights)[..., None], known)[1].item())
+    run = np.pad(np.diff(result.over_steps(SEPARATION.name)[cell][loop.steps]), 1)
+    losses = runs[..., loop.steps] @ (-0.5 * (run[1:] + run[:-1]))
+    return float(mean_and_error(losses[..., None], known)[1].item())
 
 
 def loop_energies(

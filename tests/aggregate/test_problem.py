@@ -58,7 +58,10 @@ def counted(monkeypatch: pytest.MonkeyPatch) -> Counter[str]:
     return counts
 
 
-@pytest.mark.parametrize("adhesion", ADHESIONS.values(), ids=ADHESIONS)
+@pytest.mark.parametrize(
+    "adhesion",
+    [pytest.param(each, marks=[pytest.mark.large] * (name == "dugdale"), id=name) for name, each in ADHESIONS.items()],
+)
 def test_all_is_found_once(adhesion: Adhesion, counted: Counter[str]) -> None:
     data = rm.generate({**ASPERITIES, "count": 50}, seed=3)
     one = Problem(Ensemble.from_dataset(data), E, adhesion)

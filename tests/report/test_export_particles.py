@@ -4,6 +4,7 @@ import os
 import re
 import shlex
 import subprocess
+import warnings
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -80,7 +81,7 @@ def _cells(r: Floats) -> Iterator[tuple[float, float]]:
 def test_a_table_in_csv_has_the_same_law_over_the_overclosure(file: Path) -> None:
     table = of_csv(exported(file, "law.csv", to="csv", branch="unloading"))
     assert list(table)[:5] == ["overclosure [m]", "force [N]", "energy [N m]", "separation [m]", "standard_error [N]"]
-    assert list(table)[5:] == ["stiffness [N/m]", "stiffness_error [N/m]"]
+    assert list(table)[5:] == [f"tangent_stiffness{end} [N/m]" for end in ("", "_error", "_standard_error")]
     x, force, energy, separation = table.to_numpy().T[:4]
     np.testing.assert_array_equal(separation, -x)
     work = [np.trapezoid(force[: end + 1], x[: end + 1]) for end in range(x.size)]
@@ -97,7 +98,7 @@ def test_a_table_in_csv_has_the_same_law_over_the_overclosure(file: Path) -> Non
 @pytest.mark.parametrize("branch", ["loading", "unloading"])
 def test_the_stiffness_is_that_of_a_finer_path_to_the_stated_error(file: Path, branch: str) -> None:
     table = of_csv(exported(file, "stiff.csv", to="csv", branch=branch, units="um,nN"))
-    x, stiffness, error = table[["overclosure [um]", "stiffness [nN/um]", "stiffness_error [nN/um]"]].to_numpy().T
+    x, stiffness, error, standard_error = table.to_numpy().T[[0, 5, 6, 7]]
     far, _ = curve(file, "loading")
     fine = {"separation": np.linspace(far[0], far[-1], 20 * (far.size - 1) + 1).tolist(), "unload": True}
     rm.run(scene(path=fine, batch={"estimator": "expected"}), file.parent / "finer.nc", resume=False)
@@ -106,13 +107,37 @@ def test_the_stiffness_is_that_of_a_finer_path_to_the_stated_error(file: Path, b
     exact = np.interp(x, -h[ordered] / 1e-6, np.gradient(law[ordered], -h[ordered], edge_order=2)) / 1e-3
     assert (np.abs(stiffness - exact) <= error)[1:].all()  # contact is made, or lost, at the first
     assert np.median(error / np.abs(exact)) < 0.02
+    assert np.isnan(standard_error).all()
+
+
+def test_the_stiffness_of_a_mean_has_its_jumps_and_its_standard_error_within(tmp_path: Path) -> None:
+    path = {"separation": {"start": "6 sigma", "stop": "0 sigma", "steps": 60}, "unload": True}
+    made = scene(path=path, batch={"realizations": 10}, output={"variables": ["force"]})
+    rm.run(made, tmp_path / "ten.nc")
+    x, value, error, spread = (
+        of_csv(exported(tmp_path / "ten.nc", "ten.csv", to="csv", error=0.1)).to_numpy().T[[0, 5, 6, 7]]
+    )
+    with xr.open_dataset(tmp_path / "ten.nc") as data:
+        on = data.isel(step=np.flatnonzero(data.branch == "loading"))
+        at = np.searchsorted(-on.separation.to_numpy(), x)[1:-1]
+        slopes = (on.force.values[:, at + 1] - on.force.values[:, at - 1]) / (
+            on.separation.values[at - 1] - on.separation.values[at + 1]
+        )
+        np.testing.assert_allclose(value[1:-1], slopes.mean(axis=0), rtol=1e-9)
+        np.testing.assert_allclose(spread[1:-1], slopes.std(axis=0, ddof=1) / 10**0.5, rtol=1e-9)
+    expected = scene(path={"separation": {"start": "6 sigma", "stop": "0 sigma", "steps": 600}, "unload": True})
+    law = rm.run({**expected, "batch": {"estimator": "expected"}}, tmp_path / "mean.nc")
+    h, force = curve(tmp_path / "mean.nc", "loading")
+    exact = np.interp(x, -h, np.gradient(force, -h))
+    assert law.realization.size == 1
+    assert (np.abs(value - exact) <= error + 2.0 * spread).mean() > 0.9
 
 
 def test_the_header_tells_loss_tension_and_stiffness(file: Path) -> None:
     said = header_of(exported(file, "told.table", branch="unloading"))
     with xr.open_dataset(file) as data:
         lost = data.isel(realization=0).roughmdr.hysteresis()
-    told = re.search(r"loss: (\S+) N m to (\S+) m \(loading takes (\S+)\), there and back;", said)
+    told = re.search(r"loss: (\S+) N m to (\S+) m within \S+ \(loading takes (\S+)\), there and back;", said)
     loss, reached, taken = map(float, told.groups())  # type: ignore[union-attr]
     assert reached == pytest.approx(-curve(file, "loading")[0].min(), rel=1e-5)
     assert loss == pytest.approx(float(lost.energy_lost), rel=1e-3)
@@ -125,7 +150,8 @@ def test_the_header_tells_loss_tension_and_stiffness(file: Path) -> None:
     assert APART - overclosure == pytest.approx(r[force.argmin()], rel=1e-8)
     assert deepest == pytest.approx(-curve(file, "unloading")[1].min(), rel=1e-8)
     stiffest = float(re.search(r"stiffness: up to (\S+) N/m", said)[1])
-    assert stiffest == pytest.approx(np.max(-np.diff(force) / np.diff(r)), rel=1e-3)
+    h, law = curve(file, "unloading")
+    assert stiffest == pytest.approx(np.max(-np.diff(law) / np.diff(h)), rel=1e-3)
 
 
 @pytest.mark.large
@@ -139,7 +165,7 @@ def test_each_loop_of_a_path_tells_its_loss(tmp_path: Path) -> None:
         rm.run(scene(path={"separation": separations}, batch={"estimator": "expected"}), tmp_path / f"{name}.nc")
         return header_of(exported(tmp_path / f"{name}.nc", f"{name}.table", error=0.05))
 
-    pattern = r"(\S+ N m to \S+ m) \(loading takes \S+\)"
+    pattern = r"(\S+ N m to \S+ m) within \S+ \(loading takes \S+\)"
     together = re.findall(pattern, said("all", *loops))
     assert together == [re.search(pattern, said(f"{i}", loop))[1] for i, loop in enumerate(loops)]  # type: ignore[index]
     half = said("half", loops[1], np.linspace(far, 0.0, 120), np.linspace(0.0, 1.0, 20))
@@ -178,6 +204,16 @@ def test_a_smooth_particle_is_lost_by_a_jump_at_the_tension_of_jkr(tmp_path: Pat
     x, on = of_csv(exported(tmp_path / "smooth.nc", "on.csv", to="csv", error=0.05)).to_numpy().T[:2]
     assert 0.0 <= x[0] < step  # on touching it jumps into contact
     assert on[0] < 0.0
+
+
+def test_a_law_all_in_tension_is_exported_without_a_warning(tmp_path: Path) -> None:
+    path = {"separation": {"start": "6 sigma", "stop": "3.9 sigma", "steps": 60}, "unload": True}
+    law = rm.run(scene(path=path, batch={"estimator": "expected"}), tmp_path / "tension.nc")
+    assert float(law.force.max()) <= 0.0
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        table = of_csv(exported(tmp_path / "tension.nc", "on.csv", to="csv", branch="unloading", error=0.1))
+    assert table["force [N]"].min() == pytest.approx(float(law.force.min()), rel=0.1)
 
 
 @pytest.mark.parametrize(

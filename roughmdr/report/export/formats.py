@@ -49,7 +49,12 @@ class Format(NamedTuple):
 _INCLUDED = "for *INCLUDE under a *SURFACE INTERACTION"
 _AS_CALLED = "a function of what it is called with, by default the time; constant beyond its ends"
 _BY_NAME = "a table that real constants of contact elements take as %NAME%"
-_ALL = dict.fromkeys(("pressure", "force", "loss", "conductance", "area", "tangential", "nodes"), "")
+_ALL = {
+    **dict.fromkeys(("pressure", "loss", "conductance", "area", "tangential", "nodes"), ""),
+    "force": "tangent_stiffness is the slope over the neighbouring steps of the path, jumps of contacts included, "
+    "which the variable stiffness leaves out; tangent_stiffness_error, estimated from the second neighbours, is that "
+    "of a smooth law, tangent_stiffness_standard_error that of the mean over the realisations",
+}
 _PAIR = "{y:.12e}, {x:.12e}"  # numbers in the 20 characters that CalculiX reads
 _FUNCTION = """\
 [Functions]

@@ -32,7 +32,7 @@ def origin_lines(cell: ResultView, words: str) -> Iterator[tuple[str, str]]:
 
 def law_lines(result: ResultView) -> Iterator[tuple[str, str]]:
     """Yield how a law was made of realisations, and its numerical error."""
-    runs = result.realizations
+    runs = int(result.done.sum(axis=-1).min()) if result.keeps_runs else result.realizations
     yield "law", "expected law" if result.estimator == "expected" else f"mean of {runs} realisation{'s' * (runs > 1)}"
     if result.known("numerical_error").size:
         yield "numerical error", f"force within {result.largest('numerical_error'):.2g} of the largest"

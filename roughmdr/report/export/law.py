@@ -59,6 +59,8 @@ class Law(NamedTuple):
     """In the dimension of its source, in SI: [step]."""
     standard_error: Floats
     """Standard error of ``value`` over the realisations, NaN of one: [step]."""
+    steps: Ints
+    """Steps of the path: [step]."""
     realizations: int
     """Number of which it is the mean; 0 of an expected law."""
     scene: str
@@ -82,7 +84,7 @@ def law_of(cell: ResultView, quantity: Quantity, branch: str) -> Law:
     value, error, source = _mean(cell, quantity, steps)
     pressure = value if quantity.whole else _mean(cell, _PRESSURE, steps)[0]
     runs = 0 if cell.estimator == "expected" else cell.realizations
-    return Law(source, separation[steps], pressure, value, error, runs, cell.attrs["scene"])
+    return Law(source, separation[steps], pressure, value, error, steps, runs, cell.attrs["scene"])
 
 
 def _steps(legs: list[Leg], separation: Floats, branch: str) -> Ints:

@@ -9,63 +9,66 @@ from roughmdr.model_error.parts import PLASTIC
 from roughmdr.report.export.header import law_lines, model_lines, origin_lines
 from roughmdr.report.export.text import Column, Document
 from roughmdr.report.export.units import UnitSystem
-from roughmdr.result.loops import Loop, loops_of
+from roughmdr.result.loops import Loop, loops_of, standard_error_of
 from roughmdr.result.select import select
 from roughmdr.result.view import ResultView
-from roughmdr.variables import SEPARATION, swept_name
+from roughmdr.variables import SEPARATION
 
-_ENDS = {swept_name(f"path.separation.{end}") for end in ("start", "stop")}
+_ENDS = "path_separation_"
+"""Beginning of the names of swept keys that say where a loading begins or ends."""
 
 
 def loss_document(result: ResultView, chosen: Mapping[str, object], units: UnitSystem) -> Document:
     """Return the energy lost in each loop of the path of a result, or of each cell of a sweep of where it ends.
 
-    StoreError where another key is swept, or where no loading is undone by its unloading.
+    StoreError where another key is swept, or where no unloading goes back to where its loading began.
     """
     view, words = select(result, chosen)
-    others = [name for name in view.sweep if name not in _ENDS]
+    others = [name for name in view.swept(view.cells[0]) if not name.startswith(_ENDS)]
     if others:
-        listed = ", ".join(f"{name} ({view.sweep[name]})" for name in others)
-        raise StoreError(f"the result has {len(view.cells)} cells, over {listed}: select one of each")
+        raise StoreError(f"the result has {len(view.cells)} cells, over {', '.join(others)}: select one of each")
     if view.control != SEPARATION.name or not view.holds("force"):
         raise StoreError("quantity 'loss' needs the force over the separation; run the scene with path.separation")
-    loops = sorted((loop for cell in view.cells for loop in loops_of(view, cell)), key=lambda loop: -loop.closest)
+    loops = [(loop, standard_error_of(view, cell, loop)) for cell in view.cells for loop in loops_of(view, cell)]
     if not loops:
         raise StoreError(
-            "no loading of the path is undone by an unloading: give path.unload = true and sweep path.separation.stop, "
-            "or a list of separations that comes and goes several times"
+            "no unloading of the path goes back to where its loading began: give path.unload = true and sweep "
+            "path.separation.stop, or a list of separations that comes and goes several times"
         )
-    if np.isnan([loop.lost for loop in loops]).all():
+    if np.isnan([loop.energy_lost for loop, _ in loops]).all():
         raise StoreError("the force is not known at all steps of any loop: no run was computed, or none to its end")
+    loops.sort(key=lambda each: (-each[0].closest, -each[0].start))
     return Document(
         "loss", dict(origin_lines(view, words)) | dict(_lines(view, len(loops), units)), _columns(loops, units)
     )
 
 
-def _columns(loops: list[Loop], units: UnitSystem) -> tuple[Column, ...]:
-    """Return a row for each loop, the shallowest first."""
+def _columns(loops: list[tuple[Loop, float]], units: UnitSystem) -> tuple[Column, ...]:
+    """Return a row for each loop, with its standard error, the shallowest first."""
     length, energy, unit = units.length, units.force.size * units.length.size, f"{units.force.name} {units.length.name}"
-    closest, lost, error, standard_error, work = np.array(loops).T
+    start, closest, lost, error, work = np.array([loop[1:] for loop, _ in loops]).T
     return (
-        Column("overclosure", length.name, -closest / length.size),
+        Column("overclosure", length.name, 0.0 - closest / length.size),
         Column("energy_lost", unit, lost / energy),
         Column("energy_lost_error", unit, error / energy),
-        Column("standard_error", unit, standard_error / energy),
+        Column("standard_error", unit, np.array([each for _, each in loops]) / energy),
         Column("work_of_loading", unit, work / energy),
+        Column("start", length.name, 0.0 - start / length.size),
     )
 
 
 def _lines(view: ResultView, count: int, units: UnitSystem) -> Iterator[tuple[str, str]]:
     """Yield what the numbers are, and their errors."""
     yield from law_lines(view)
-    yield "quantity", "work of a loading to the overclosure, and that less what the unloading behind it gives back"
+    yield "quantity", "energy lost by a loop from the overclosure start to the overclosure and back to start"
     yield "units", units.names
-    yield "datum", "overclosure is minus the separation, where the loop turns"
-    yield "points", f"{count} loops"
+    yield "datum", "overclosure is minus the separation of the scene; adhesion loses energy before it is 0, too"
+    yield "points", f"{count} loop{'s' * (count > 1)}"
     yield (
         "error",
-        "energy_lost_error is that of the trapezoid rule between the steps, jumps included, standard_error that of the "
-        "mean over the realisations; that of the model is not in them",
+        "energy_lost_error is that of the steps, jumps included, with the force at both ends of the loop times its "
+        "way, for contacts that are there: it is small where loops begin out of contact; standard_error is that of the "
+        "mean over the realisations, nan of one and of statistics; that of the model is in neither",
     )
     if view.known(PLASTIC).size:
         yield "memory", "contacts yield: of several loops of one path, each loses what those before have left"

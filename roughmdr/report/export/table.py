@@ -9,7 +9,7 @@ from roughmdr.errors import StoreError
 from roughmdr.numerics.arguments import Floats
 from roughmdr.report.export.law import Law, Quantity
 from roughmdr.report.export.stable import StablePart, stable_part
-from roughmdr.report.export.whole import even_points, slopes, whole_part
+from roughmdr.report.export.whole import even_points, whole_part
 from roughmdr.result.between import ANYWHERE, REACH, off_line
 from roughmdr.schema.units import format_quantity
 
@@ -37,8 +37,6 @@ class Table(NamedTuple):
     """Largest standard error over the largest value; NaN of a single realisation."""
     warnings: tuple[str, ...]
     """Parts of the law that the table leaves out, in words."""
-    slope: tuple[Floats, ...]
-    """Slope of the value at the knots, and how far that may be off, estimated from the steps: [point]."""
 
 
 @np.errstate(all="ignore")  # numbers that no float can hold are refused
@@ -92,8 +90,7 @@ def table_of(
         float(off.max()) / largest,
         float((off[upper] / np.abs(y[upper])).max()),
         float(part.standard_error.max()) / largest,
-        tuple(_warnings(part, branch, float(law.pressure.max()) * error)),
-        tuple(np.interp(at, x, each) for each in slopes(x, y)),
+        tuple(_warnings(part, branch, float(np.abs(law.pressure).max()) * error)),
     )
 
 

@@ -4,10 +4,12 @@ LAMMPS reads forces F at distances r of two centres. Its ``pair_style table line
 evenly spaced in r^2, takes F/r for linear in r^2; ``fix wall/table`` reads the same file for the distance from a wall.
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
+from typing import NamedTuple
 
 import numpy as np
 
+from roughmdr.batch.moments import mean_and_error
 from roughmdr.errors import StoreError
 from roughmdr.numerics.arguments import Floats
 from roughmdr.report.export.law import Law
@@ -15,7 +17,7 @@ from roughmdr.report.export.stable import StablePart
 from roughmdr.report.export.text import Column
 from roughmdr.report.export.units import UnitSystem
 from roughmdr.result.loops import loops_of
-from roughmdr.result.view import ResultView
+from roughmdr.result.view import ResultView, step_blocks
 from roughmdr.schema.units import format_quantity
 
 _DOUBLINGS = 8
@@ -62,30 +64,46 @@ def even_points(x: Floats, y: Floats, tolerance: Floats, distance: float) -> tup
     raise StoreError(f"{kept}: ask for a larger one, or make the steps of the path more, or more even")
 
 
-def slopes(x: Floats, y: Floats) -> tuple[Floats, Floats]:
-    """Return the slope of a curve over the neighbours of each point, and by how much it is off, as estimated.
+class Slopes(NamedTuple):
+    """The slope of the mean force over the overclosure [N/m], at points of a table."""
 
-    That is the largest difference to the slope over the second neighbours, of a point and both beside it: of a smooth
-    curve three times the error. At the ends the difference is added, which cancels the first order.
+    value: Floats
+    error: Floats
+    """How far it may be off, estimated from the steps around; jumps between them included."""
+    standard_error: Floats
+    """Over the realisations; NaN of one, and of a result of statistics."""
+
+
+def slopes_at(overclosure: Floats, cell: ResultView, law: Law, count: int) -> Slopes:
+    """Return the slope over the neighbouring steps, of the last ``count`` steps of a law, at some overclosures.
+
+    Its error is twice the largest difference to the slope over the second neighbours, of a step and both beside it: so
+    large is that of a jump, and of a smooth curve a sixth. At the ends the difference is added, which cancels the first
+    order.
     """
-    points = np.arange(x.size)
-    sides = ((np.maximum(points - far, 0), np.minimum(points + far, x.size - 1)) for far in (1, 2))
-    near, wide = ((y[high] - y[low]) / (x[high] - x[low]) for low, high in sides)
-    off = np.pad(near - wide, 1)
-    near[[0, -1]] += off[[1, -2]]
-    return near, np.max(np.abs([off[1:-1], off[2:], off[:-2]]), axis=0)
+    steps, x, y, points = law.steps[-count:], -law.separation[-count:], law.value[-count:], np.arange(count)
+    (low, high), second = ((np.maximum(points - far, 0), np.minimum(points + far, count - 1)) for far in (1, 2))
+    value, wide = ((y[up] - y[down]) / (x[up] - x[down]) for down, up in ((low, high), second))
+    off = np.pad(value - wide, 1)
+    value[[0, -1]] += off[[1, -2]]
+    error = 2.0 * np.max(np.abs([off[1:-1], off[2:], off[:-2]]), axis=0)
+    spread = np.full(count, np.nan)
+    if "force" in cell.variables:
+        runs, known = cell.variables["force"].values.reshape(-1, cell.sizes["step"]), cell.done.reshape(-1)
+        for some in step_blocks(known.size, count):
+            rise = runs[:, steps[high[some]]] - runs[:, steps[low[some]]]
+            spread[some] = mean_and_error(rise, known)[1] / (x[high[some]] - x[low[some]])
+    return Slopes(*(np.interp(overclosure, x, each) for each in (value, error, spread)))
 
 
-def columns_of(
-    part: StablePart, slope: Sequence[Floats], units: UnitSystem, distance: float | None
-) -> tuple[Column, ...]:
+def columns_of(part: StablePart, slopes: Slopes, units: UnitSystem, distance: float | None) -> tuple[Column, ...]:
     """Return the columns of a table of forces: overclosure, or from near to far the distance, force, energy, others.
 
-    The energy is the integral of the force as it is read between the points, 0 where contact is lost. ``slope`` is that
-    of the force over the overclosure [N/m], and its error: the stiffness.
+    The energy is the integral of the force as it is read between the points, 0 where contact is lost.
     """
     length, unit = units.length, units.force
-    x, force, stiffness = part.overclosure, part.value, unit.size / length.size
+    x, force, per_length = part.overclosure, part.value, f"{unit.name}/{length.name}"
+    tangent = zip(("", "_error", "_standard_error"), slopes, strict=True)
     r = np.ones_like(x) if distance is None else distance - x
     slices = np.diff(x) * (r[1:] + r[:-1]) * (force[1:] / r[1:] + force[:-1] / r[:-1]) / 4.0
     energy = np.concatenate([[0.0], np.cumsum(slices)])
@@ -96,8 +114,10 @@ def columns_of(
         Column("energy", f"{unit.name} {length.name}", energy[::order] / (unit.size * length.size)),
         Column("separation", length.name, -x[::order] / length.size),
         Column("standard_error", unit.name, part.standard_error[::order] / unit.size),
-        Column("stiffness", f"{unit.name}/{length.name}", slope[0][::order] / stiffness),
-        Column("stiffness_error", f"{unit.name}/{length.name}", slope[1][::order] / stiffness),
+        *(
+            Column(f"tangent_stiffness{end}", per_length, each[::order] / unit.size * length.size)
+            for end, each in tangent
+        ),
     )
 
 
@@ -111,15 +131,14 @@ def whole_lines(cell: ResultView, part: StablePart, law: Law, units: UnitSystem)
     if force[low] < 0.0:
         deepest = f"the deepest at a step is {-law.value.min() / unit.size:.9g} {unit.name}"
         yield "tension", f"{-force[low]:.9g} {unit.name} at {x[low]:.9g} {length.name}; {deepest}"
-    most = f"up to {np.max(np.diff(force) / np.diff(x)):.4g} {unit.name}/{length.name} between the points"
-    column = "a column of csv and json has the slope over the neighbouring steps, and its error, estimated from these"
-    yield "stiffness", f"{most}, for the time step; {column}, not that of the mean over the realisations"
-    energy = unit.size * length.size
+    energy, steepest = unit.size * length.size, np.max(np.diff(law.value) / -np.diff(law.separation))
+    between = "between two steps of the path, for the time step of an integration"
+    yield "stiffness", f"up to {steepest / unit.size * length.size:.4g} {unit.name}/{length.name} {between}"
     losses = [
-        f"{loop.lost / energy:.4g} {names} to {-loop.closest / length.size:.6g} {length.name} "
-        f"(loading takes {loop.work / energy:.4g})"
-        for loop in loops_of(cell)
-        if np.isfinite(loop.lost)
+        f"{loop.energy_lost / energy:.4g} {names} to {-loop.closest / length.size:.6g} {length.name} within "
+        f"{loop.error / energy:.2g} (loading takes {loop.work_of_loading / energy:.4g})"
+        for loop in loops_of(cell, ())
+        if np.isfinite(loop.energy_lost)
     ]
     if losses:
         yield "loss", f"{', '.join(losses)}, there and back; a table has no memory: loading and unloading are two"

@@ -16,7 +16,7 @@ from roughmdr.report.export.law import QUANTITIES, Law, Quantity, law_of
 from roughmdr.report.export.table import MOST_ERROR, Table, table_of
 from roughmdr.report.export.text import Column, Document, text_of
 from roughmdr.report.export.units import UnitSystem
-from roughmdr.report.export.whole import columns_of
+from roughmdr.report.export.whole import columns_of, slopes_at
 from roughmdr.result.given import given_result
 from roughmdr.result.select import cell_of, select
 from roughmdr.result.view import ResultView
@@ -53,6 +53,8 @@ class Export:
         _check("to", self.to, list(FORMATS))
         _check("quantity", self.quantity, [*QUANTITIES, "loss", "nodes"])
         _check("branch", self.branch, list(BRANCHES))
+        if self.quantity == "loss" and self.branch != "loading":
+            raise StoreError(f"branch is {self.branch!r}; a loss is that of a loading and the unloading behind it")
         if not _LEAST_ERROR <= self.error <= MOST_ERROR:
             raise StoreError(f"error is {self.error!r}; it must be from {_LEAST_ERROR:g} to {MOST_ERROR:g}")
         if self.quantity not in self.format.quantities:
@@ -97,7 +99,7 @@ def export(result: "str | Path | xr.Dataset", out: str | Path, *, to: str, fresh
     **options
         ``quantity``: "pressure" (default) or "area" over the overclosure, "conductance" or "tangential" stiffness over
         the pressure, each per nominal area; "force", the whole law of a body; "loss", the energy lost by each loop of
-        the path, or of each cell of a sweep of path.separation.stop; or "nodes", a few asperities whose sum is the
+        the path, and in each cell of a sweep of path.separation.stop; or "nodes", a few asperities whose sum is the
         expected law. ``units``: names of length, force and stress such as "mm,N,MPa"; SI unless given.
         ``branch``: "loading" (default) or "unloading". ``error``: that of lines between the points of the table, over
         the largest value and over the value itself where that is within a decade of it (1e-3). ``distance`` [m]: for
@@ -164,9 +166,10 @@ def document_of(result: ResultView, file: Path | None, asked: Export) -> tuple[D
     law = law_of(cell, quantity, asked.branch)
     form = asked.format
     table = table_of(law, quantity, asked.branch, error=asked.error, with_tension=form.with_tension, distance=centres)
-    columns = (
-        columns_of(table.law, table.slope, units, centres) if quantity.whole else _columns(table, law, quantity, units)
-    )
+    if quantity.whole:
+        columns = columns_of(table.law, slopes_at(table.law.overclosure, cell, law, table.steps), units, centres)
+    else:
+        columns = _columns(table, law, quantity, units)
     _check_fit(table, quantity, units, asked)
     header = dict(origin_lines(cell, words)) | dict(table_lines(cell, table, quantity, law, units))
     if note := form.quantities[asked.quantity]:
