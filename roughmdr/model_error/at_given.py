@@ -37,6 +37,9 @@ that yield ``PLASTIC_AT_FORCE`` where the flat is lower than ever before.
 """
 _MOST = 0.9
 """Largest relative error that a value is corrected for: of a value that is too small by more nothing is left."""
+_STEEPEST = 3.0
+"""Largest change of areas and radii with the force, both relative, that moves their errors [1]. Where contacts jump,
+the force may hardly change from step to step; under JKR this bounds as many areas at given separation as none does."""
 
 
 def errors_at(*arrays: Floats, names: Sequence[str], given: str) -> tuple[Floats, ...]:
@@ -75,6 +78,9 @@ def errors_at(*arrays: Floats, names: Sequence[str], given: str) -> tuple[Floats
         if kept in FORCES:
             return 0.0 * of_force if name in FORCES else at_given_force(name)
         moved = np.abs(changes[name]) * _per_change(at_given_force(kept), changes[kept])
+        if kept == _H and name != "stiffness":
+            steepest = _STEEPEST * np.abs(values[name]) * of_force / over
+            moved = np.where(values[name] != 0.0, np.fmin(moved, steepest), moved)
         if name not in FORCES:
             return at_given_force(name) + moved
         if kept != _H:

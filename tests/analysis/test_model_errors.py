@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import xarray as xr
 from hypothesis import given as drawn, settings, strategies as st
-from scenes import CONDUCTION, ensemble, scene
+from scenes import ASPERITIES, CONDUCTION, ensemble, scene
 
 import roughmdr as rm
 from roughmdr.model_error.at_force import (
@@ -203,6 +203,18 @@ def test_of_a_reference_that_is_given_the_errors_are_those_at_its_separation() -
     assert float(there[f"contact_area{MODEL_ERROR}"]) == pytest.approx(
         float(own[f"contact_area{MODEL_ERROR}"]), rel=0.2
     )
+
+
+def test_where_contacts_jump_the_area_is_as_well_known_as_elsewhere() -> None:
+    """From step to step the force may hardly change where the area does."""
+    found = rm.run(scene(asperities={**ASPERITIES, "count": 40}, output={"variables": ["force", "contact_area"]}))
+    errors = errors_along(ResultView(found))
+    force, area = (found[name].values for name in ("force", "contact_area"))
+    load = np.maximum(np.abs(force), (-force).max(axis=-1, keepdims=True))
+    of_force, of_area = (errors[f"{name}{MODEL_ERROR}"].values for name in ("force", "contact_area"))
+    there = area > 0.0
+    ratio = (of_area[there] / area[there]) / (of_force[there] / load[there])
+    assert 0.5 < np.median(ratio) < ratio.max() < 5.0
 
 
 def test_holds_plateaus_and_zero_loads_have_errors_too() -> None:
