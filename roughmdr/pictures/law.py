@@ -22,6 +22,8 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 EXPECTED = "expected"
+INDEPENDENT = "expected, independent"
+"""Label of the expected law of asperities that do not feel each other, beside a result of those that do."""
 REFERENCE = "boundary elements"
 _ABSENT = "the result holds no reference; run its scene with --set reference.model=boundary_elements"
 _THEORY_COLOURS = ("#009e73", "#e69f00", "#cc79a7", "#56b4e9", "#8c564b")
@@ -32,7 +34,7 @@ _PULL_OFF = {"force": "pull_off_force", "pressure": "pull_off_pressure"}
 class OverlayLine(NamedTuple):
     """A curve drawn over a result: a variable in one cell, over the whole path."""
 
-    label: str  # name of the theory curve; ``EXPECTED`` for the expected law of the scene, or ``REFERENCE``
+    label: str  # name of the theory curve; ``EXPECTED`` or ``INDEPENDENT`` for the expected law, or ``REFERENCE``
     variable: str
     cell: int
     x: Floats  # separation [m], or the variable drawn over
@@ -149,7 +151,7 @@ def _overlay_style(label: str, overlays: list[str], colour: str | None) -> dict[
 
     behind, dark = rcParams["axes.facecolor"], rcParams["text.color"]
     around = {"path_effects": [withStroke(linewidth=1.8, foreground=behind, alpha=0.5), Normal()], "zorder": 4}
-    if label == EXPECTED:
+    if label in (EXPECTED, INDEPENDENT):
         return {"color": dark, "lw": 0.9, **around}
     if label == REFERENCE:
         return {"color": dark, "ls": (0, (4.0, 2.0)), "lw": 1.2, **around}

@@ -10,10 +10,11 @@ from roughmdr.batch.plan import Cell, Plan, make_plan
 from roughmdr.batch.realization import simulate_realization
 from roughmdr.errors import RoughmdrError, StoreError
 from roughmdr.numerics.arguments import Floats
-from roughmdr.pictures.law import EXPECTED, Overlay, OverlayLine
+from roughmdr.pictures.law import EXPECTED, INDEPENDENT, Overlay, OverlayLine
 from roughmdr.pictures.theory_curves import THEORY_CURVES, TheoryCurve
 from roughmdr.result.view import ResultView
 from roughmdr.scene import read
+from roughmdr.schema.toml_text import parse_toml
 from roughmdr.schema.wording import count_by_cell
 from roughmdr.variables import LATERAL
 
@@ -49,14 +50,18 @@ def plan_of_result(file: Path | None, result: ResultView) -> Plan:
 
 
 def overlay_expected(plan: Plan, names: list[str]) -> Overlay:
-    """Return the expected law of each cell in these variables."""
+    """Return the expected law of each cell in these variables; of asperities in pairs as if they were independent."""
+    pairs = plan.scene.interaction is not None and plan.scene.interaction.model == "pairwise"
 
     def evaluate(cell: Cell) -> dict[str, Floats]:
-        if reason := cell.scene.reason_against("expected"):
+        table = parse_toml(cell.scene.toml)
+        scene = read({name: table[name] for name in table if name != "interaction"}) if pairs else cell.scene
+        if reason := scene.reason_against("expected"):
             raise RoughmdrError(reason)
-        return simulate_realization(cell.scene, cell.path, 0, names, "expected").variables
+        return simulate_realization(scene, cell.path, 0, names, "expected").variables
 
-    return _evaluate_cells(plan, EXPECTED, lambda cell: "", evaluate)
+    label, remark = (INDEPENDENT, "of independent asperities") if pairs else (EXPECTED, "")
+    return _evaluate_cells(plan, label, lambda cell: remark, evaluate)
 
 
 def overlay_theory(plan: Plan, names: list[str], x: str = "separation") -> Overlay:

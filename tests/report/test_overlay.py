@@ -238,6 +238,17 @@ def test_the_expected_line_is_the_run_with_that_estimator() -> None:
         np.testing.assert_array_equal(lines[name], run[name].values[0])
 
 
+def test_beside_pairs_the_expected_line_is_that_of_independent_asperities() -> None:
+    independent = {"adhesion": None, "output": {"variables": ["force"]}}
+    pairs = scene(**independent, interaction={"model": "pairwise"}, sweep={"material.modulus": ["3 MPa", "6 MPa"]})
+    found = overlay_expected(make_plan(read(pairs)), ["force"])
+    assert found.remarks == ["drawn; of independent asperities"]
+    run = rm.run(scene(**independent, batch={"estimator": "expected"}))
+    for line, modulus in zip(found.lines, (1.0, 2.0), strict=True):
+        assert line.label == "expected, independent"
+        np.testing.assert_allclose(line.values, modulus * run.force.values[0], rtol=1e-12)
+
+
 @pytest.mark.parametrize(
     ("asperities", "reason"),
     [
