@@ -72,12 +72,11 @@ def at_value(dataset: "xr.Dataset", name: str, values: ArrayLike, branch: str) -
 
 def _curves(result: ResultView, name: str) -> "dict[str, xr.DataArray]":
     """Return the separation, all curves, and those that follow from them, but those of ``name`` itself."""
-    curves = {each: curve(result, each) for each in stored_curves(result)}
+    curves = {each: curve(result, each) for each in dict.fromkeys([result.control, *stored_curves(result)])}
     suffix = "_mean" if result.keeps_statistics else ""
-    for derived, total in PER_AREA.items():
-        if f"{total}{suffix}" in curves and f"{derived}{suffix}" not in curves and "nominal_area" in result.variables:
-            curves[f"{derived}{suffix}"] = curve(result, derived)
-    curves = {result.control: curve(result, result.control), **curves}
+    for derived, total in PER_AREA.items() if "nominal_area" in result.variables else ():
+        if not {total, f"{total}{suffix}"}.isdisjoint(curves) and {derived, f"{derived}{suffix}"}.isdisjoint(curves):
+            curves[f"{derived}{suffix}" if f"{total}{suffix}" in curves else derived] = curve(result, derived)
     if SEPARATION.name not in curves and f"{SEPARATION.name}_mean" not in curves:
         curves = {SEPARATION.name: curve(result, SEPARATION.name), **curves}
     return {each: array for each, array in curves.items() if each.removesuffix("_mean") != name}

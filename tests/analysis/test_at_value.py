@@ -255,3 +255,15 @@ def test_numbers_that_only_jump_are_off_by_a_whole_jump_between_steps() -> None:
                 assert abs(found[i] - truth) <= error[i] * (1.0 + 1e-9)
     change = np.diff(law.force.values)[2:4]
     assert (there.force_interpolation_error.values < 0.5 * np.abs(change)).all()
+
+
+@pytest.mark.parametrize("keep", ["curves", "statistics"])
+def test_under_a_dead_load_the_pressure_is_found_too(keep: str) -> None:
+    path, output = {"force": {"stop": "1 mN", "steps": 20}}, {"variables": ["contact_area"], "keep": keep}
+    loads = rm.run(scene(adhesion=None, path=path, batch={"realizations": 2}, output=output))
+    there = loads.roughmdr.at_contact_fraction("0.3 %")
+    np.testing.assert_allclose(there.pressure, there.force / loads.nominal_area, rtol=1e-12)
+    error = there.force_interpolation_error / loads.nominal_area
+    np.testing.assert_allclose(there.pressure_interpolation_error, error, rtol=1e-9)
+    assert there.pressure.attrs["units"] == "Pa"
+    assert bool((there.pressure > 0.0).all())

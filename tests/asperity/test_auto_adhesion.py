@@ -73,7 +73,7 @@ def test_auto_without_adhesion_is_hertz_and_where_jkr_has_no_contact_dugdale() -
         rm.indent(TIP, **SOFT, indentation=1e-9, adhesion="auto", range="1 nm", method="springs")
 
 
-@pytest.mark.few(2)
+@pytest.mark.few(1)
 @pytest.mark.parametrize("tabor", [0.3, 3.0, 300.0, 3e4])
 def test_the_load_of_an_ensemble_takes_the_model_that_a_run_takes(tabor: float) -> None:
     adhesion = {"model": "auto", "work": W, "strength": strength_at(tabor), "error": 0.05}
