@@ -1,16 +1,18 @@
 """Time and memory of a run before it runs, by the constants of ``costs``."""
 
+import math
 import os
 from typing import NamedTuple
 
 from roughmdr.batch.costs import START_UP, beside, ensemble_bytes, file_bytes, result_bytes, seconds
 from roughmdr.batch.plan import Plan
 from roughmdr.batch.rounds import Rounds
-from roughmdr.batch.tasks import prepare_all, split_into_tasks
+from roughmdr.batch.tasks import RunRange, prepare_all, split_into_tasks
 from roughmdr.storage.memory import available_memory, peak_memory
 
 _DISK = 3e8  # bytes a second: a slow disk
 _STEP_SECONDS = 3e-6  # seconds of a step of the path itself
+_STARTS = 10.0  # seconds of runs from which processes are worth their start, which takes 2 to 4
 
 
 class Estimate(NamedTuple):
@@ -28,6 +30,20 @@ class Estimate(NamedTuple):
     file: float  # size of the result on disk
 
 
+def suits_processes(plan: Plan, workers: int) -> bool:
+    """Return whether processes compute a plan sooner than threads: runs in pairs hold Python's lock, and several that
+    take longer than processes take to start are worth them.
+    """
+    first = Rounds(plan).begin()
+    several = workers > 1 and sum(each.last - each.first for each in first) > 1
+    return several and plan.scene.needs_positions and _computing(first) > _STARTS
+
+
+def _computing(runs: list[RunRange]) -> float:
+    """Return the seconds of all runs, one after the other."""
+    return math.fsum((each.last - each.first) * seconds(each.cell, each.estimator) for each in runs)
+
+
 def estimate(plan: Plan, workers: int) -> Estimate:
     """Return the cost of a plan beyond what the compiler takes; what the runs need is compiled here already."""
     first = Rounds(plan).begin()
@@ -38,8 +54,7 @@ def estimate(plan: Plan, workers: int) -> Estimate:
     cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
     busy = min(workers, tasks, cores)
     file = file_bytes(plan, runs)
-    computing = sum((each.last - each.first) * seconds(each.cell, each.estimator) for each in first) / busy
-    whole = START_UP + computing + file / _DISK + _STEP_SECONDS * plan.steps
+    whole = START_UP + _computing(first) / busy + file / _DISK + _STEP_SECONDS * plan.steps
     finer = sum((each.last - each.first) * (beside(each.cell, finest=True)[0] - beside(each.cell)[0]) for each in first)
     at_a_time = ensemble_bytes(plan) + max(beside(cell)[1] for cell in plan.cells)
     return Estimate(

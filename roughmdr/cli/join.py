@@ -7,7 +7,7 @@ import click
 
 from roughmdr.cli.invocation import command_line, without_garbage_collection
 from roughmdr.cli.options import FILE, fresh_option, json_option, workers_option
-from roughmdr.cli.run import backend, print_done
+from roughmdr.cli.run import print_done
 from roughmdr.cli.terminal import Command
 
 
@@ -26,7 +26,8 @@ def join(ctx: click.Context, /, output: Path, workers: int, fresh: bool, quiet: 
     """
     started = time.perf_counter()
     with without_garbage_collection():
+        from roughmdr.runner.backend import Backend
         from roughmdr.runner.shares import join as joined
     quiet |= as_json
-    done = joined(output, backend(workers, "threads"), fresh=fresh, quiet=quiet, command=command_line())
+    done = joined(output, Backend(workers=workers), fresh=fresh, quiet=quiet, command=command_line())
     print_done(ctx, done, output, started, quiet=quiet, as_json=as_json, verbose=False)

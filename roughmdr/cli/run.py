@@ -13,6 +13,7 @@ from roughmdr.cli.terminal import INCOMPLETE, Command, print_document, print_tex
 from roughmdr.errors import RoughmdrError
 
 if TYPE_CHECKING:
+    from roughmdr.batch.plan import Plan
     from roughmdr.batch.resume.share import Share
     from roughmdr.runner.backend import Backend
     from roughmdr.storage.labelled import Labelled
@@ -25,10 +26,9 @@ if TYPE_CHECKING:
 @workers_option
 @click.option(
     "--scheduler",
-    default="threads",
-    show_default=True,
     metavar="threads|processes|tcp://HOST:PORT|tls://HOST:PORT",
-    help="Compute on this machine, or on the dask cluster with its scheduler at this address.",
+    help="Compute on this machine, or on the dask cluster with its scheduler at this address. Default: threads, or for "
+    "long runs of asperities in pairs processes.",
 )
 @click.option("--tls-ca", "tls_ca_file", type=FILE, help="For tls://: certificate of the authority (PEM).")
 @click.option("--tls-cert", "tls_client_cert", type=FILE, help="For tls://: certificate of this client (PEM).")
@@ -81,10 +81,10 @@ def run(
     if share is not None:
         from roughmdr.runner.shares import compute_share
 
-        part_done = compute_share(planned, output, share, backend(**others), **options)
+        part_done = compute_share(planned, output, share, backend(planned, **others), **options)
         _print_share(ctx, *part_done, quiet=quiet, as_json=as_json)
         return
-    done = execute(planned, output, backend(**others), **options)
+    done = execute(planned, output, backend(planned, **others), **options)
     print_done(ctx, done, output, started, quiet=quiet, verbose=verbose, as_json=as_json)
 
 
@@ -137,10 +137,12 @@ def _end(ctx: click.Context, failed: str, text: str, **table: Any) -> None:
         sys.exit(INCOMPLETE)
 
 
-def backend(workers: int, scheduler: str, **tls: Path | None) -> "Backend":
+def backend(plan: "Plan", workers: int, scheduler: str | None, **tls: Path | None) -> "Backend":
     """Return where runs are computed, from the options of the command; RoughmdrError if some files of TLS lack."""
+    from roughmdr.batch.estimate import suits_processes
     from roughmdr.runner.backend import Backend
 
+    scheduler = scheduler or ("processes" if suits_processes(plan, workers) else "threads")
     given = {option: str(file) for option, file in tls.items() if file is not None}
     if 0 < len(given) < len(tls):
         raise RoughmdrError("--tls-ca, --tls-cert and --tls-key must be given together")

@@ -11,6 +11,8 @@ from roughmdr.runner.local import Pool, Processes, Threads
 if TYPE_CHECKING:
     from distributed import Client
 
+    from roughmdr.batch.plan import Plan
+
 _LOCAL = ("threads", "processes")
 _ADDRESSES = ("tcp://", "tls://")
 
@@ -42,6 +44,12 @@ class Backend(NamedTuple):
     def is_local(self) -> bool:
         """Whether the tasks are computed on this machine, by workers that are started for them."""
         return isinstance(self.scheduler, str) and self.scheduler in _LOCAL
+
+    def for_runs_of(self, plan: "Plan") -> "Backend":
+        """Return this backend, where runs in pairs are computed by one thread: they hold Python's lock, for which
+        several wait longer than they compute.
+        """
+        return self._replace(workers=1) if self.scheduler == "threads" and plan.scene.needs_positions else self
 
     def pool(self) -> AbstractContextManager[Pool]:
         """Open the pool that computes the tasks; RoughmdrError where a cluster does not answer."""

@@ -90,6 +90,7 @@ def at_work(
     StoreError, before computing, for too little memory; Unfinished where the batch cannot go on.
     """
     plan, writer = beginning.plan, beginning.writer
+    backend = backend.for_runs_of(plan)
     with compiling(lambda: tell_compiling(plan.scene.title, quiet=quiet)):
         check_foreseen(plan)
         runs = sum(method.realizations for method in beginning.rounds.methods)  # runs in the first round

@@ -44,6 +44,7 @@ def run(
         Number of threads or processes.
     scheduler : str or distributed.Client
         "threads", "processes", or a dask cluster: its address, ``tcp://HOST:PORT`` or ``tls://HOST:PORT``, or a Client.
+        Asperities in pairs, which threads compute one run at a time, are done sooner by processes.
     resume : bool
         Whether what ``out`` holds, or an earlier run kept beside it, is reused; else it is replaced.
     set : dict, optional

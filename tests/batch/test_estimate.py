@@ -10,8 +10,9 @@ from scenes import ASPERITIES, scene
 from test_cli import roughmdr
 
 from roughmdr.batch.costs import along_seconds, ensemble_bytes, locates_jumps, seconds
-from roughmdr.batch.estimate import estimate
+from roughmdr.batch.estimate import estimate, suits_processes
 from roughmdr.batch.plan import Plan, make_plan
+from roughmdr.runner.backend import Backend
 from roughmdr.scene import read
 
 
@@ -82,3 +83,21 @@ def test_what_is_loaded_at_its_first_use_is_not_taken_for_the_cost(tmp_path: Pat
     assert done.returncode == 0, done.stderr
     memory = json.loads(done.stdout)["plan"]["memory"]
     assert memory["total"] - memory["resident"] < 1e9  # 0.13 GB in two workers
+
+
+def test_long_runs_in_pairs_suit_processes_and_are_one_thread_s() -> None:
+    """They hold Python's lock; one run, one worker, or a short batch is not worth the start of processes."""
+    pairs: dict[str, Any] = {"interaction": {"model": "pairwise"}, "path": {"separation": ["3 um", "2 um"]}}
+    many = {"batch": {"realizations": 10_000}}
+    assert suits_processes(planned(**pairs, **many), 2)
+    assert not suits_processes(planned(**pairs, **many), 1)
+    assert not suits_processes(planned(**pairs, batch={"realizations": 1}), 2)
+    few = {"asperities": {**ASPERITIES, "count": 50}, "batch": {"realizations": 3}}
+    assert not suits_processes(planned(**pairs, **few), 2)
+    mean_field = {**pairs, "interaction": {"model": "mean_field"}, "adhesion": None}
+    for alone in (planned(**(pairs | {"interaction": None}), **many), planned(**mean_field, **many)):
+        assert not suits_processes(alone, 2)
+        assert Backend(workers=3).for_runs_of(alone).workers == 3
+    in_pairs = planned(**pairs, **many)
+    assert Backend(workers=3).for_runs_of(in_pairs).workers == 1
+    assert Backend("processes", 3).for_runs_of(in_pairs).workers == 3

@@ -28,9 +28,14 @@ from batches import (
     kept,
     running,
     until,
+    write_scene,
 )
+from command import roughmdr
 from forms import large
+from scenes import scene
 
+import roughmdr as rm
+from roughmdr.batch.estimate import suits_processes
 from roughmdr.batch.plan import make_plan
 from roughmdr.errors import RoughmdrError
 from roughmdr.runner import cluster
@@ -114,6 +119,17 @@ def test_the_same_bits_from_threads_and_processes(
     assert_same(
         execute(plan, None, Backend(scheduler, workers, None, runs_per_task)).to_xarray(), request.getfixturevalue(keep)
     )
+
+
+@pytest.mark.large
+def test_the_command_computes_long_runs_in_pairs_in_processes_to_the_same_bits(tmp_path: Path) -> None:
+    path = {"separation": {"start": "3 sigma", "stop": "1 sigma", "steps": 10}}
+    pairs = scene(adhesion=None, interaction={"model": "pairwise"}, path=path, batch={"realizations": 60})
+    assert suits_processes(make_plan(read(pairs)), 2)
+    write_scene(tmp_path, pairs)
+    roughmdr("run", tmp_path / "scene.toml", "-o", tmp_path / "out.nc")
+    with xr.open_dataset(tmp_path / "out.nc") as by_command:
+        assert_same(by_command, rm.run(pairs))
 
 
 @pytest.mark.large
