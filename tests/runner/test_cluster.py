@@ -32,7 +32,7 @@ from batches import (
 )
 from command import roughmdr
 from forms import large
-from scenes import scene
+from scenes import ASPERITIES, scene
 
 import roughmdr as rm
 from roughmdr.batch.estimate import suits_processes
@@ -123,8 +123,9 @@ def test_the_same_bits_from_threads_and_processes(
 
 @pytest.mark.large
 def test_the_command_computes_long_runs_in_pairs_in_processes_to_the_same_bits(tmp_path: Path) -> None:
-    path = {"separation": {"start": "3 sigma", "stop": "1 sigma", "steps": 10}}
-    pairs = scene(adhesion=None, interaction={"model": "pairwise"}, path=path, batch={"realizations": 60})
+    path = {"separation": {"start": "4 sigma", "stop": "1.5 sigma", "steps": 20}, "unload": True}
+    asperities = {**ASPERITIES, "count": 150, "radius": "10 um"}
+    pairs = scene(asperities=asperities, interaction={"model": "pairwise"}, path=path, batch={"realizations": 12})
     assert suits_processes(make_plan(read(pairs)), 2)
     write_scene(tmp_path, pairs)
     roughmdr("run", tmp_path / "scene.toml", "-o", tmp_path / "out.nc")
