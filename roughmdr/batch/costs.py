@@ -4,6 +4,7 @@ Seconds on one core of a small server (``pipelines/study.py``: work_precision, s
 three. They are constants, never measured, so that every machine chooses alike.
 """
 
+import math
 from typing import NamedTuple
 
 import numpy as np
@@ -54,10 +55,10 @@ _HEIGHTS = 1000  # asperities that are drawn to tell which share touches
 _YIELDING, _YIELDING_PAIRS = 10, 4.0  # with a hardness, separations more; factor on pairs: 1.9 to 5 (400 asperities)
 _MEAN_FIELD_PASSES = 6  # factor on independent asperities: Newton's method takes all steps at once
 # Seconds of asperities that feel each other in pairs: to begin, each separation of the path (solved once), and each
-# asperity and each contact there: 9 ensembles of 100 to 4000, within a factor of 1.4.
+# asperity and each contact there: right to 1.4 for 9 ensembles of 100 to 4000 paraboloids.
 _PAIRWISE_BEGIN, _PAIRWISE_STEP, _PAIRWISE_VISIT, _PAIRWISE_CONTACT = 2e-2, 2.2e-3, 3e-7, 1.4e-5
 # Seconds with adhesion: to begin, a step of the path, and each contact that is made and lost, which grows with their
-# number: 12 ensembles of 100 to 2000, of up to 160 contacts, within a factor of 1.4; 57 s of 4000 with some 900.
+# number: right to 1.4 for 12 ensembles of 100 to 2000 paraboloids with up to 160 contacts, and 4000 with some 900.
 _ADHERING_BEGIN, _ADHERING_STEP, _ADHERING, _ADHERING_EACH = 0.5, 1.4e-3, 4.5e-2, 2e-5
 _GRID_STEP = 1.2  # seconds of a separation by boundary elements, should they be needed
 _FIND_HILL = 2e-3  # seconds to find a hill, where each realisation has a map of its own
@@ -124,8 +125,11 @@ def _jump_seconds(cell: Cell) -> float:
 
 
 def touching(cell: Cell) -> float:
-    """Return about how many asperities the flat reaches, as a few of them tell."""
+    """Return about how many asperities the flat reaches, as a few of them tell, or of drawn maps a normal height."""
     source = cell.scene.asperities
+    if source.map_points:
+        above = cell.path.separation.min() - np.median(source.extremes(0.5).height)
+        return 0.5 * source.expected_count * math.erfc(above / (math.sqrt(2.0) * source.sigma))
     heights = source.limited_to(_HEIGHTS).ensemble(cell.scene.seed, 0).height
     reached = np.count_nonzero(heights > cell.path.separation.min())
     return source.expected_count * reached / max(heights.size, 1)
@@ -160,10 +164,9 @@ def _expected_seconds(scene: Scene, steps: int) -> float:
 def paired_seconds(cell: Cell) -> float:
     """Return about how long one realisation takes [s] whose asperities feel each other in pairs.
 
-    Of asperities on maps that are drawn all are in contact. Each step is one on the grid, where ``beyond`` allows that.
+    Each step is one on the grid, where ``beyond`` allows that.
     """
-    count = cell.scene.asperities.expected_count
-    contacts = count if cell.scene.asperities.map_points else touching(cell)
+    count, contacts = cell.scene.asperities.expected_count, touching(cell)
     if cell.scene.work > 0.0:
         return _ADHERING_BEGIN + cell.steps * _ADHERING_STEP + contacts * (_ADHERING + contacts * _ADHERING_EACH)
     beyond = None if cell.scene.interaction is None else cell.scene.interaction.beyond

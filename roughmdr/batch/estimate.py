@@ -12,7 +12,8 @@ from roughmdr.storage.memory import available_memory, peak_memory
 
 _DISK = 3e8  # bytes a second: a slow disk
 _STEP_SECONDS = 3e-6  # seconds of a step of the path itself
-_STARTS = 10.0  # seconds of runs from which processes are worth their start, which takes 2 to 4
+_WORTH = 10.0  # seconds of runs from which processes are worth their start
+_PROCESSES = 3.0  # seconds that processes take to start: 2 to 4
 
 
 class Estimate(NamedTuple):
@@ -25,18 +26,28 @@ class Estimate(NamedTuple):
     finest: float  # bytes of these grids at a time; 0 where there are none
     start_up: float  # until the first asperity is made
     memory: float  # peak, in all
-    resident: float  # of Python and its packages; 0 where the system does not tell
+    resident: float  # of Python and its packages, in all processes; 0 where the system does not tell
     available_memory: float  # how much more this process could be given; inf where the system does not tell
     file: float  # size of the result on disk
 
 
-def suits_processes(plan: Plan, workers: int) -> bool:
-    """Return whether processes compute a plan sooner than threads: runs in pairs hold Python's lock, and several that
-    take longer than processes take to start are worth them.
+def holds_lock(plan: Plan) -> bool:
+    """Return whether runs hold Python's lock, so that threads wait for each other longer than they compute: in pairs,
+    but for what is solved on a grid.
     """
+    scene = plan.scene
+    grids = any(stage.on_grid for stage in scene.stages) or getattr(scene.interaction, "beyond", "flag") != "flag"
+    return not grids and any(cell.scene.needs_positions for cell in plan.cells)
+
+
+def suits_processes(plan: Plan, workers: int) -> bool:
+    """Return whether processes compute a plan sooner than threads: several runs that hold Python's lock, and take
+    longer than processes take to start.
+    """
+    if workers == 1 or not holds_lock(plan):
+        return False
     first = Rounds(plan).begin()
-    several = workers > 1 and sum(each.last - each.first for each in first) > 1
-    return several and plan.scene.needs_positions and _computing(first) > _STARTS
+    return sum(each.last - each.first for each in first) > 1 and _computing(first) > _WORTH
 
 
 def _computing(runs: list[RunRange]) -> float:
@@ -45,7 +56,11 @@ def _computing(runs: list[RunRange]) -> float:
 
 
 def estimate(plan: Plan, workers: int) -> Estimate:
-    """Return the cost of a plan beyond what the compiler takes; what the runs need is compiled here already."""
+    """Return the cost of a plan by ``roughmdr run``, beyond what the compiler takes; what the runs need is compiled
+    here already.
+    """
+    processes = suits_processes(plan, workers)
+    workers = 1 if holds_lock(plan) and not processes else workers
     first = Rounds(plan).begin()
     prepare_all(plan, first)
     resident = peak_memory()
@@ -53,8 +68,9 @@ def estimate(plan: Plan, workers: int) -> Estimate:
     tasks = len(split_into_tasks(plan, first, plan.scene.output.variables, workers))
     cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
     busy = min(workers, tasks, cores)
+    resident *= 1 + busy * processes
     file = file_bytes(plan, runs)
-    whole = START_UP + _computing(first) / busy + file / _DISK + _STEP_SECONDS * plan.steps
+    whole = START_UP + _PROCESSES * processes + _computing(first) / busy + file / _DISK + _STEP_SECONDS * plan.steps
     finer = sum((each.last - each.first) * (beside(each.cell, finest=True)[0] - beside(each.cell)[0]) for each in first)
     at_a_time = ensemble_bytes(plan) + max(beside(cell)[1] for cell in plan.cells)
     return Estimate(

@@ -1,7 +1,8 @@
 """The error of the model in variables of a law, each in its own unit, where a quantity is given.
 
 At given force each variable X has an error of its own, and the separation that of the force at given separation over
-the slope of the law. Where another quantity C is given, X is off by its change with C times the error of C besides.
+the slope of the law. Where another quantity C is given, X is off by its change with C times the error of C besides; at
+given separation, but for the stiffness, by ``_STEEPEST`` times the relative error of the force at most.
 """
 
 from collections.abc import Collection, Mapping, Sequence
@@ -38,8 +39,9 @@ that yield ``PLASTIC_AT_FORCE`` where the flat is lower than ever before.
 _MOST = 0.9
 """Largest relative error that a value is corrected for: of a value that is too small by more nothing is left."""
 _STEEPEST = 3.0
-"""Largest change of areas and radii with the force, both relative, that moves their errors [1]. Where contacts jump,
-the force may hardly change from step to step; under JKR this bounds as many areas at given separation as none does."""
+"""Largest change of areas, radii and conductances with the force, both relative, that moves their errors [1]. Where
+contacts jump, the force may hardly change from step to step; under JKR as many areas at given separation are bounded so
+as without it, 99.4 %."""
 
 
 def errors_at(*arrays: Floats, names: Sequence[str], given: str) -> tuple[Floats, ...]:
@@ -78,9 +80,10 @@ def errors_at(*arrays: Floats, names: Sequence[str], given: str) -> tuple[Floats
         if kept in FORCES:
             return 0.0 * of_force if name in FORCES else at_given_force(name)
         moved = np.abs(changes[name]) * _per_change(at_given_force(kept), changes[kept])
-        if kept == _H and name != "stiffness":
+        if kept == _H and name not in (_H, "stiffness"):
             steepest = _STEEPEST * np.abs(values[name]) * of_force / over
-            moved = np.where(values[name] != 0.0, np.fmin(moved, steepest), moved)
+            known = (values[name] != 0.0) & np.isfinite(changes[name] * changes[kept])
+            moved = np.where(known, np.fmin(moved, steepest), moved)
         if name not in FORCES:
             return at_given_force(name) + moved
         if kept != _H:

@@ -14,7 +14,6 @@ from roughmdr.pictures.law import EXPECTED, INDEPENDENT, Overlay, OverlayLine
 from roughmdr.pictures.theory_curves import THEORY_CURVES, TheoryCurve
 from roughmdr.result.view import ResultView
 from roughmdr.scene import read
-from roughmdr.schema.toml_text import parse_toml
 from roughmdr.schema.wording import count_by_cell
 from roughmdr.variables import LATERAL
 
@@ -51,17 +50,21 @@ def plan_of_result(file: Path | None, result: ResultView) -> Plan:
 
 def overlay_expected(plan: Plan, names: list[str]) -> Overlay:
     """Return the expected law of each cell in these variables; of asperities in pairs as if they were independent."""
-    pairs = plan.scene.interaction is not None and plan.scene.interaction.model == "pairwise"
 
     def evaluate(cell: Cell) -> dict[str, Floats]:
-        table = parse_toml(cell.scene.toml)
-        scene = read({name: table[name] for name in table if name != "interaction"}) if pairs else cell.scene
+        alone = cell.scene.model_copy(update={"interaction": None})
+        scene = alone if cell.scene.needs_positions else cell.scene
         if reason := scene.reason_against("expected"):
             raise RoughmdrError(reason)
         return simulate_realization(scene, cell.path, 0, names, "expected").variables
 
-    label, remark = (INDEPENDENT, "of independent asperities") if pairs else (EXPECTED, "")
-    return _evaluate_cells(plan, label, lambda cell: remark, evaluate)
+    def remark(cell: Cell) -> str:
+        return "of independent asperities" * cell.scene.needs_positions
+
+    found = _evaluate_cells(plan, EXPECTED, remark, evaluate)
+    pairs = [plan.cells[line.cell].scene.needs_positions for line in found.lines]
+    lines = [line._replace(label=INDEPENDENT) if each else line for line, each in zip(found.lines, pairs, strict=True)]
+    return Overlay(lines, found.remarks)
 
 
 def overlay_theory(plan: Plan, names: list[str], x: str = "separation") -> Overlay:

@@ -1,5 +1,6 @@
 """The energies of loops of a path: the work of loading, what unloading gives back, and the loss."""
 
+import math
 from collections.abc import Iterator
 from itertools import pairwise
 from typing import NamedTuple
@@ -13,6 +14,7 @@ from roughmdr.result.view import ResultView
 from roughmdr.variables import SEPARATION
 
 _CLOSED = 1e-9  # difference of separations that are equal, over the largest on the path
+_FEWEST = 4  # steps of a leg that tell the error of its work
 
 
 class Loop(NamedTuple):
@@ -26,7 +28,9 @@ class Loop(NamedTuple):
     energy_lost: float
     """Work of the loading less what the unloading gives back [J]."""
     error: float
-    """How far ``energy_lost`` may be off [J], by the trapezoid rule and by contacts at the ends of the loop."""
+    """How far ``energy_lost`` may be off [J], by the trapezoid rule and by contacts at the ends of the loop; NaN of
+    fewer than four steps a leg.
+    """
     work_of_loading: float
     """[J]"""
 
@@ -49,14 +53,17 @@ def loops_of(result: ResultView, cell: tuple[int, ...]) -> Iterator[Loop]:
             h, load = separation[steps], force[steps]
             work, _, _, _, lost, error = map(float, loop_energies(load, h, loading=inward, unloading=~inward))
             error += float((abs(load[0]) + abs(load[-1])) * (h[0] - h.min()))
-            lost = max(lost, 0.0) if abs(lost) <= error else lost  # no loop gains energy
-            yield Loop(steps, float(h[0]), float(h.min()), lost, error, work)
+            if min(inward.sum(), (~inward).sum()) < _FEWEST - 1:
+                error = math.nan
+            if -error <= lost <= 0.0:  # none, to the error
+                lost = 0.0
+            yield Loop(steps, float(h[0]), float(h.min()), lost, error, 0.0 + work)
 
 
 def standard_error_of(result: ResultView, cell: tuple[int, ...], loop: Loop) -> float:
     """Return the standard error [J] of the energy lost, over the realisations; NaN of one, and of statistics.
 
-    It is that of a sum of the forces along the loop.
+    The energy of each is a weighted sum of its forces along the loop.
     """
     if "force" not in result.variables:
         return float("nan")

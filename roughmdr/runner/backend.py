@@ -46,10 +46,10 @@ class Backend(NamedTuple):
         return isinstance(self.scheduler, str) and self.scheduler in _LOCAL
 
     def for_runs_of(self, plan: "Plan") -> "Backend":
-        """Return this backend, where runs in pairs are computed by one thread: they hold Python's lock, for which
-        several wait longer than they compute.
-        """
-        return self._replace(workers=1) if self.scheduler == "threads" and plan.scene.needs_positions else self
+        """Return this backend, of threads with one where the runs of a plan hold Python's lock."""
+        from roughmdr.batch.estimate import holds_lock
+
+        return self._replace(workers=1) if self.scheduler == "threads" and holds_lock(plan) else self
 
     def pool(self) -> AbstractContextManager[Pool]:
         """Open the pool that computes the tasks; RoughmdrError where a cluster does not answer."""

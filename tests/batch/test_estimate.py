@@ -101,3 +101,7 @@ def test_long_runs_in_pairs_suit_processes_and_are_one_thread_s() -> None:
     in_pairs = planned(**pairs, **many)
     assert Backend(workers=3).for_runs_of(in_pairs).workers == 1
     assert Backend("processes", 3).for_runs_of(in_pairs).workers == 3
+    on_a_grid = planned(
+        **{**pairs, "adhesion": None, "interaction": {"model": "pairwise", "beyond": "boundary_elements"}}
+    )
+    assert Backend(workers=3).for_runs_of(on_a_grid).workers == 3

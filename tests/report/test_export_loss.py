@@ -144,7 +144,7 @@ def test_units_formats_and_the_command(tmp_path: Path) -> None:
     assert table["units"]["energy_lost"] == "nN um"
     np.testing.assert_allclose(table["columns"]["energy_lost"], si["energy_lost [N m]"] / 1e-15, rtol=1e-12)
     np.testing.assert_allclose(table["columns"]["overclosure"], si["overclosure [m]"] / 1e-6, rtol=1e-12)
-    assert "energy_lost_error is that of the steps" in header_of(tmp_path / "si.csv")
+    assert "energy_lost_error is by the steps, jumps included" in header_of(tmp_path / "si.csv")
 
 
 def test_a_cell_that_was_not_computed_is_shown_as_unknown(tmp_path: Path) -> None:
@@ -158,6 +158,24 @@ def test_a_cell_that_was_not_computed_is_shown_as_unknown(tmp_path: Path) -> Non
     result.force[:], result.status[:] = np.nan, 2
     with pytest.raises(rm.StoreError, match="the force is not known at all steps of any loop"):
         losses(result, tmp_path / "none.csv")
+
+
+def test_cells_with_other_numbers_of_runs_are_told(tmp_path: Path) -> None:
+    sweep = {"path.separation.stop": ["1 sigma", "0 sigma"]}
+    path = {"separation": {"start": f"{FAR} sigma", "stop": "0 sigma", "steps": 20}, "unload": True}
+    result = rm.run(scene(path=path, sweep=sweep, batch={"realizations": 3}))
+    result.force[1, 2], result.status[1, 2] = np.nan, 2
+    assert np.isfinite(losses(result, tmp_path / "loss.csv").to_numpy()).all()
+    assert "law: mean of 2 to 3 realisations" in header_of(tmp_path / "loss.csv")
+    result.force[0], result.status[0] = np.nan, 2
+    losses(result, tmp_path / "loss.csv")
+    assert "law: mean of 2 realisations" in header_of(tmp_path / "loss.csv")
+
+
+def test_a_loop_of_few_steps_has_no_known_error(tmp_path: Path) -> None:
+    found = losses(rm.run(scene(path=through(FAR, 0.0, FAR, steps=3), batch={"realizations": 1})), tmp_path / "l.csv")
+    assert np.isnan(found["energy_lost_error [N m]"]).all()
+    assert np.isfinite(found["energy_lost [N m]"]).all()
 
 
 def test_contacts_that_yield_remember_loops_before(tmp_path: Path) -> None:

@@ -206,6 +206,17 @@ def test_a_smooth_particle_is_lost_by_a_jump_at_the_tension_of_jkr(tmp_path: Pat
     assert on[0] < 0.0
 
 
+def test_a_sweep_of_one_value_is_exported_as_its_cell(tmp_path: Path) -> None:
+    plain = scene(path=WIDE, batch={"estimator": "expected"}, adhesion={"model": "jkr", "work": "20 mJ/m^2"})
+    swept = scene(path=WIDE, batch={"estimator": "expected"}, sweep={"adhesion.work": ["20 mJ/m^2"]})
+    rm.run(plain, tmp_path / "plain.nc")
+    rm.run(swept, tmp_path / "swept.nc")
+    own, alone = (exported(tmp_path / f"{name}.nc", f"{name}.csv", to="csv") for name in ("swept", "plain"))
+    np.testing.assert_array_equal(of_csv(own), of_csv(alone))
+    assert "loss: " in header_of(own)
+    assert "key: " in header_of(own)
+
+
 def test_a_law_all_in_tension_is_exported_without_a_warning(tmp_path: Path) -> None:
     path = {"separation": {"start": "6 sigma", "stop": "3.9 sigma", "steps": 60}, "unload": True}
     law = rm.run(scene(path=path, batch={"estimator": "expected"}), tmp_path / "tension.nc")

@@ -8,8 +8,8 @@ from hypothesis import given, settings, strategies as st
 from numpy.typing import NDArray
 
 from roughmdr.errors import StoreError
-from roughmdr.report.export.header import rounded_up
 from roughmdr.report.export.table import RELATIVE_FROM, knots, tolerances
+from roughmdr.report.export.text import rounded_up
 from roughmdr.report.export.units import UnitSystem
 
 Floats = NDArray[np.float64]

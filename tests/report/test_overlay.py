@@ -247,6 +247,12 @@ def test_beside_pairs_the_expected_line_is_that_of_independent_asperities() -> N
     for line, modulus in zip(found.lines, (1.0, 2.0), strict=True):
         assert line.label == "expected, independent"
         np.testing.assert_allclose(line.values, modulus * run.force.values[0], rtol=1e-12)
+    first, models = {"model": "mean_field", "boundary": "free"}, ["mean_field", "pairwise"]
+    both = scene(**independent, interaction=first, sweep={"interaction.model": models})
+    lines = overlay_expected(make_plan(read(both)), ["force"]).lines
+    assert [line.label for line in lines] == ["expected", "expected, independent"]
+    np.testing.assert_allclose(lines[1].values, run.force.values[0], rtol=1e-12)
+    assert (lines[0].values < lines[1].values).all()
 
 
 @pytest.mark.parametrize(

@@ -52,8 +52,9 @@ _BY_NAME = "a table that real constants of contact elements take as %NAME%"
 _ALL = {
     **dict.fromkeys(("pressure", "loss", "conductance", "area", "tangential", "nodes"), ""),
     "force": "tangent_stiffness is the slope over the neighbouring steps of the path, jumps of contacts included, "
-    "which the variable stiffness leaves out; tangent_stiffness_error, estimated from the second neighbours, is that "
-    "of a smooth law, tangent_stiffness_standard_error that of the mean over the realisations",
+    "which the variable stiffness leaves out; tangent_stiffness_error, estimated from the second neighbours, is six "
+    "times that of a smooth law and as large as that by a jump; tangent_stiffness_standard_error is that of the mean "
+    "over the realisations",
 }
 _PAIR = "{y:.12e}, {x:.12e}"  # numbers in the 20 characters that CalculiX reads
 _FUNCTION = """\

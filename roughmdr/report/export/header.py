@@ -2,7 +2,6 @@
 
 import math
 from collections.abc import Iterator
-from decimal import ROUND_UP, Context
 
 import numpy as np
 
@@ -10,6 +9,7 @@ from roughmdr.report.contacts import conduction_lines, contact_pressure_lines
 from roughmdr.report.export.joint import SEATING, hyperbola
 from roughmdr.report.export.law import Law, Quantity
 from roughmdr.report.export.table import RELATIVE_FROM, Table
+from roughmdr.report.export.text import rounded_up
 from roughmdr.report.export.units import UnitSystem
 from roughmdr.report.export.whole import whole_lines
 from roughmdr.result.between import CONFIDENCE
@@ -25,29 +25,30 @@ def origin_lines(cell: ResultView, words: str) -> Iterator[tuple[str, str]]:
     yield "scene", cell.attrs["title"]
     if words:
         yield "cell", words
-    if "cell_key" in cell.coordinates and not cell.sweep:
+    if "cell_key" in cell.coordinates and cell.coordinates["cell_key"].values.size == 1:
         yield "key", str(cell.coordinates["cell_key"].values.item())
     yield "made by", f"{cell.attrs['source']}, seed {cell.attrs['seed']}"
 
 
-def law_lines(result: ResultView) -> Iterator[tuple[str, str]]:
-    """Yield how a law was made of realisations, and its numerical error."""
-    runs = int(result.done.sum(axis=-1).min()) if result.keeps_runs else result.realizations
-    yield "law", "expected law" if result.estimator == "expected" else f"mean of {runs} realisation{'s' * (runs > 1)}"
+def mean_lines(result: ResultView) -> Iterator[tuple[str, str]]:
+    """Yield of how many realisations a law is the mean, in the cells that have some, and its numerical error."""
+    if result.keeps_runs:
+        counts = result.done.sum(axis=-1)
+    else:
+        counts = getattr(result.variables.get("realization_count"), "values", np.array(result.realizations))
+    some = counts[counts > 0]
+    fewest, most = (int(some.min()), int(some.max())) if some.size else (0, 0)
+    number = f"{most}" if fewest == most else f"{fewest} to {most}"
+    yield "law", "expected law" if result.estimator == "expected" else f"mean of {number} realisation{'s' * (most > 1)}"
     if result.known("numerical_error").size:
         yield "numerical error", f"force within {result.largest('numerical_error'):.2g} of the largest"
-
-
-def rounded_up(error: float) -> str:
-    """Return an error with two digits, rounded up so that it still holds."""
-    return f"{float(Context(prec=2, rounding=ROUND_UP).create_decimal(repr(float(error)))):.2g}"
 
 
 def table_lines(
     cell: ResultView, table: Table, quantity: Quantity, law: Law, units: UnitSystem
 ) -> Iterator[tuple[str, str]]:
     """Yield what the numbers of a table are, and their errors."""
-    yield from law_lines(cell)
+    yield from mean_lines(cell)
     yield "branch", table.law.rule
     variable, unit = law.source.variable, units.of(law.source.dimension).name
     per_area = "" if quantity.whole or variable in ("pressure", "contact_fraction") else " per nominal area"

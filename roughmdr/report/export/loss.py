@@ -6,7 +6,7 @@ import numpy as np
 
 from roughmdr.errors import StoreError
 from roughmdr.model_error.parts import PLASTIC
-from roughmdr.report.export.header import law_lines, model_lines, origin_lines
+from roughmdr.report.export.header import mean_lines, model_lines, origin_lines
 from roughmdr.report.export.text import Column, Document
 from roughmdr.report.export.units import UnitSystem
 from roughmdr.result.loops import Loop, loops_of, standard_error_of
@@ -24,11 +24,11 @@ def loss_document(result: ResultView, chosen: Mapping[str, object], units: UnitS
     StoreError where another key is swept, or where no unloading goes back to where its loading began.
     """
     view, words = select(result, chosen)
-    others = [name for name in view.swept(view.cells[0]) if not name.startswith(_ENDS)]
-    if others:
-        raise StoreError(f"the result has {len(view.cells)} cells, over {', '.join(others)}: select one of each")
     if view.control != SEPARATION.name or not view.holds("force"):
         raise StoreError("quantity 'loss' needs the force over the separation; run the scene with path.separation")
+    others = [name for name in view.swept(view.cells[0]) if not name.startswith(_ENDS)]
+    if others and len(view.cells) > 1:
+        raise StoreError(f"the result has {len(view.cells)} cells, over {', '.join(others)}: select one of each")
     loops = [(loop, standard_error_of(view, cell, loop)) for cell in view.cells for loop in loops_of(view, cell)]
     if not loops:
         raise StoreError(
@@ -44,7 +44,7 @@ def loss_document(result: ResultView, chosen: Mapping[str, object], units: UnitS
 
 
 def _columns(loops: list[tuple[Loop, float]], units: UnitSystem) -> tuple[Column, ...]:
-    """Return a row for each loop, with its standard error, the shallowest first."""
+    """Return the columns, with a row for each loop and its standard error, the shallowest first."""
     length, energy, unit = units.length, units.force.size * units.length.size, f"{units.force.name} {units.length.name}"
     start, closest, lost, error, work = np.array([loop[1:] for loop, _ in loops]).T
     return (
@@ -59,16 +59,17 @@ def _columns(loops: list[tuple[Loop, float]], units: UnitSystem) -> tuple[Column
 
 def _lines(view: ResultView, count: int, units: UnitSystem) -> Iterator[tuple[str, str]]:
     """Yield what the numbers are, and their errors."""
-    yield from law_lines(view)
+    yield from mean_lines(view)
     yield "quantity", "energy lost by a loop from the overclosure start to the overclosure and back to start"
     yield "units", units.names
     yield "datum", "overclosure is minus the separation of the scene; adhesion loses energy before it is 0, too"
     yield "points", f"{count} loop{'s' * (count > 1)}"
     yield (
         "error",
-        "energy_lost_error is that of the steps, jumps included, with the force at both ends of the loop times its "
-        "way, for contacts that are there: it is small where loops begin out of contact; standard_error is that of the "
-        "mean over the realisations, nan of one and of statistics; that of the model is in neither",
+        "energy_lost_error is by the steps, jumps included, plus the force at both ends times the length of the loop, "
+        "since contacts there hold energy: begin out of contact to make it small; nan of fewer than four steps a leg. "
+        "standard_error is that of the mean over the realisations, nan of one and of statistics. The error of the "
+        "model is in neither",
     )
     if view.known(PLASTIC).size:
         yield "memory", "contacts yield: of several loops of one path, each loses what those before have left"

@@ -4,6 +4,7 @@ import json
 import math
 import textwrap
 from collections.abc import Iterator
+from decimal import ROUND_UP, Context
 from typing import NamedTuple
 
 from roughmdr.errors import StoreError
@@ -101,3 +102,8 @@ def _as_json(document: Document) -> str:
         },
     }
     return json.dumps(table, indent=1, ensure_ascii=False, allow_nan=False) + "\n"
+
+
+def rounded_up(error: float) -> str:
+    """Return an error with two digits, rounded up so that it still holds."""
+    return f"{float(Context(prec=2, rounding=ROUND_UP).create_decimal(repr(float(error)))):.2g}"

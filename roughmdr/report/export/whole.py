@@ -14,7 +14,7 @@ from roughmdr.errors import StoreError
 from roughmdr.numerics.arguments import Floats
 from roughmdr.report.export.law import Law
 from roughmdr.report.export.stable import StablePart
-from roughmdr.report.export.text import Column
+from roughmdr.report.export.text import Column, rounded_up
 from roughmdr.report.export.units import UnitSystem
 from roughmdr.result.loops import loops_of
 from roughmdr.result.view import ResultView, step_blocks
@@ -64,22 +64,22 @@ def even_points(x: Floats, y: Floats, tolerance: Floats, distance: float) -> tup
     raise StoreError(f"{kept}: ask for a larger one, or make the steps of the path more, or more even")
 
 
-class Slopes(NamedTuple):
+class TangentStiffness(NamedTuple):
     """The slope of the mean force over the overclosure [N/m], at points of a table."""
 
     value: Floats
     error: Floats
-    """How far it may be off, estimated from the steps around; jumps between them included."""
+    """How far it may be off, estimated from the steps around."""
     standard_error: Floats
     """Over the realisations; NaN of one, and of a result of statistics."""
 
 
-def slopes_at(overclosure: Floats, cell: ResultView, law: Law, count: int) -> Slopes:
+def tangent_stiffness(overclosure: Floats, cell: ResultView, law: Law, count: int) -> TangentStiffness:
     """Return the slope over the neighbouring steps, of the last ``count`` steps of a law, at some overclosures.
 
-    Its error is twice the largest difference to the slope over the second neighbours, of a step and both beside it: so
-    large is that of a jump, and of a smooth curve a sixth. At the ends the difference is added, which cancels the first
-    order.
+    The error is twice the largest difference to the slope over the second neighbours, of a step and both beside it. It
+    is as large as that by a jump, and on even steps six times that of a smooth law. At the ends the difference is
+    added, which cancels the first order.
     """
     steps, x, y, points = law.steps[-count:], -law.separation[-count:], law.value[-count:], np.arange(count)
     (low, high), second = ((np.maximum(points - far, 0), np.minimum(points + far, count - 1)) for far in (1, 2))
@@ -90,20 +90,22 @@ def slopes_at(overclosure: Floats, cell: ResultView, law: Law, count: int) -> Sl
     spread = np.full(count, np.nan)
     if "force" in cell.variables:
         runs, known = cell.variables["force"].values.reshape(-1, cell.sizes["step"]), cell.done.reshape(-1)
-        for some in step_blocks(known.size, count):
+        for some in step_blocks(4 * known.size, count):
             rise = runs[:, steps[high[some]]] - runs[:, steps[low[some]]]
             spread[some] = mean_and_error(rise, known)[1] / (x[high[some]] - x[low[some]])
-    return Slopes(*(np.interp(overclosure, x, each) for each in (value, error, spread)))
+    return TangentStiffness(*(np.interp(overclosure, x, each) for each in (value, error, spread)))
 
 
-def columns_of(part: StablePart, slopes: Slopes, units: UnitSystem, distance: float | None) -> tuple[Column, ...]:
+def columns_of(
+    part: StablePart, stiffness: TangentStiffness, units: UnitSystem, distance: float | None
+) -> tuple[Column, ...]:
     """Return the columns of a table of forces: overclosure, or from near to far the distance, force, energy, others.
 
     The energy is the integral of the force as it is read between the points, 0 where contact is lost.
     """
     length, unit = units.length, units.force
     x, force, per_length = part.overclosure, part.value, f"{unit.name}/{length.name}"
-    tangent = zip(("", "_error", "_standard_error"), slopes, strict=True)
+    tangent = zip(("", "_error", "_standard_error"), stiffness, strict=True)
     r = np.ones_like(x) if distance is None else distance - x
     slices = np.diff(x) * (r[1:] + r[:-1]) * (force[1:] / r[1:] + force[:-1] / r[:-1]) / 4.0
     energy = np.concatenate([[0.0], np.cumsum(slices)])
@@ -131,13 +133,13 @@ def whole_lines(cell: ResultView, part: StablePart, law: Law, units: UnitSystem)
     if force[low] < 0.0:
         deepest = f"the deepest at a step is {-law.value.min() / unit.size:.9g} {unit.name}"
         yield "tension", f"{-force[low]:.9g} {unit.name} at {x[low]:.9g} {length.name}; {deepest}"
-    energy, steepest = unit.size * length.size, np.max(np.diff(law.value) / -np.diff(law.separation))
+    joule, steepest = 1.0 / (unit.size * length.size), np.max(np.diff(law.value) / -np.diff(law.separation))
     between = "between two steps of the path, for the time step of an integration"
     yield "stiffness", f"up to {steepest / unit.size * length.size:.4g} {unit.name}/{length.name} {between}"
     losses = [
-        f"{loop.energy_lost / energy:.4g} {names} to {-loop.closest / length.size:.6g} {length.name} within "
-        f"{loop.error / energy:.2g} (loading takes {loop.work_of_loading / energy:.4g})"
-        for loop in loops_of(cell, ())
+        f"{loop.energy_lost * joule:.4g} {names} to {-loop.closest / length.size:.6g} {length.name} within "
+        f"{rounded_up(loop.error * joule)} (loading takes {loop.work_of_loading * joule:.4g})"
+        for loop in loops_of(cell, cell.cells[0])
         if np.isfinite(loop.energy_lost)
     ]
     if losses:

@@ -16,7 +16,7 @@ from roughmdr.report.export.law import QUANTITIES, Law, Quantity, law_of
 from roughmdr.report.export.table import MOST_ERROR, Table, table_of
 from roughmdr.report.export.text import Column, Document, text_of
 from roughmdr.report.export.units import UnitSystem
-from roughmdr.report.export.whole import columns_of, slopes_at
+from roughmdr.report.export.whole import columns_of, tangent_stiffness
 from roughmdr.result.given import given_result
 from roughmdr.result.select import cell_of, select
 from roughmdr.result.view import ResultView
@@ -167,7 +167,9 @@ def document_of(result: ResultView, file: Path | None, asked: Export) -> tuple[D
     form = asked.format
     table = table_of(law, quantity, asked.branch, error=asked.error, with_tension=form.with_tension, distance=centres)
     if quantity.whole:
-        columns = columns_of(table.law, slopes_at(table.law.overclosure, cell, law, table.steps), units, centres)
+        columns = columns_of(
+            table.law, tangent_stiffness(table.law.overclosure, cell, law, table.steps), units, centres
+        )
     else:
         columns = _columns(table, law, quantity, units)
     _check_fit(table, quantity, units, asked)
