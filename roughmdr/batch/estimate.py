@@ -26,7 +26,7 @@ class Estimate(NamedTuple):
     finest: float  # bytes of these grids at a time; 0 where there are none
     start_up: float  # until the first asperity is made
     memory: float  # peak, in all
-    resident: float  # of Python and its packages, in all processes; 0 where the system does not tell
+    resident: float  # memory of Python and its packages, in all processes; 0 where the system does not tell
     available_memory: float  # how much more this process could be given; inf where the system does not tell
     file: float  # size of the result on disk
 

@@ -80,7 +80,7 @@ def foresee_cells(plan: Plan) -> Prospect:
         or plan.control == LATERAL.name
         or reason_against_adhesion(Interaction(model="pairwise"), cell.scene.adhesion_model)
         else paired_seconds(cell)
-        for cell in map(plan.cells.__getitem__, some_cells(plan))
+        for cell in (plan.cells[number] for number in some_cells(plan))
     )
     return Prospect(tuple(foreseen), tuple(failures), coupled, plan.scene.interaction)
 

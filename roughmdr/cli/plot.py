@@ -25,11 +25,7 @@ from roughmdr.cli.terminal import Command, print_text
 @click.option("--step", metavar="STEP", help='Of a map or an asperity: step, from 0, or "pull-off".')
 @click.option("--realization", type=click.IntRange(min=0), help="Of a map or an asperity: realisation, from 0.")
 @click.option("--asperity", type=click.IntRange(min=0), help="Of an asperity: its number, from the highest down.")
-@click.option(
-    "--with-expected",
-    is_flag=True,
-    help="Also draw the expected law; of pairs as if independent.",
-)
+@click.option("--with-expected", is_flag=True, help="Also draw the expected law; of pairs as if independent.")
 @click.option("--with-theory", is_flag=True, help="Also draw the theory curves that apply to the scene.")
 @click.option("--with-reference", is_flag=True, help="Also draw the law by boundary elements that FILE holds.")
 @click.option("--style", metavar="STYLE", help="Style of matplotlib: its name or file.")

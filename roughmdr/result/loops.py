@@ -21,6 +21,7 @@ class Loop(NamedTuple):
     """A loading with the unloading back to where it began, in the mean of one cell."""
 
     steps: slice
+    """Steps of the path from its start back to there."""
     start: float
     """Separation where the loading begins [m]."""
     closest: float
@@ -32,7 +33,7 @@ class Loop(NamedTuple):
     fewer than four steps a leg.
     """
     work_of_loading: float
-    """[J]"""
+    """Work done on the asperities from the start to the turning point [J]."""
 
 
 def loops_of(result: ResultView, cell: tuple[int, ...]) -> Iterator[Loop]:
@@ -66,7 +67,7 @@ def standard_error_of(result: ResultView, cell: tuple[int, ...], loop: Loop) -> 
     The energy of each is a weighted sum of its forces along the loop.
     """
     if "force" not in result.variables:
-        return float("nan")
+        return math.nan
     runs, known = result.variables["force"].values[cell], result.done[cell]
     run = np.pad(np.diff(result.over_steps(SEPARATION.name)[cell][loop.steps]), 1)
     losses = runs[..., loop.steps] @ (-0.5 * (run[1:] + run[:-1]))

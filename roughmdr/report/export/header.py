@@ -31,7 +31,7 @@ def origin_lines(cell: ResultView, words: str) -> Iterator[tuple[str, str]]:
 
 
 def mean_lines(result: ResultView) -> Iterator[tuple[str, str]]:
-    """Yield of how many realisations a law is the mean, in the cells that have some, and its numerical error."""
+    """Yield the number of realisations of a mean, in the cells that have some, and the numerical error of the law."""
     if result.keeps_runs:
         counts = result.done.sum(axis=-1)
     else:
