@@ -9,6 +9,8 @@ from roughmdr.interaction.green import Periodic, below_all, periodic_load, point
 from roughmdr.numerics.arguments import Floats
 from roughmdr.numerics.jit import njit
 
+Integers = NDArray[np.int64]
+
 
 @njit
 def _fill(x: Floats, y: Floats, patch: Periodic, periodic: bool, first: int, matrices: Floats) -> None:
@@ -25,13 +27,24 @@ def _fill(x: Floats, y: Floats, patch: Periodic, periodic: bool, first: int, mat
 
 
 @njit
-def _sum_at(matrix: Floats, points: NDArray[np.int64], sources: NDArray[np.int64], source: Floats, out: Floats) -> None:
-    """Fill the sums over sources at points, which are few of all: a copy of their part would take longer."""
+def _field_at(matrices: Floats, points: Integers, sources: Integers, load: Floats, field: Floats) -> None:
+    """Fill the rows of the field at points, which are few of all: a copy of their part would take longer."""
     for i in points:
-        total = 0.0
+        for row in range(field.shape[0]):
+            total = 0.0
+            for j in sources:
+                total += matrices[row, i, j] * load[j]
+            field[row, i] = total
+
+
+@njit
+def _of_moments_at(
+    matrices: Floats, points: Integers, sources: Integers, laplacian: Floats, x: Floats, y: Floats, out: Floats
+) -> None:
+    """Fill the displacement at points by sources of the Laplacian and of the slopes of G."""
+    for i in points:
         for j in sources:
-            total += matrix[i, j] * source[j]
-        out[i] = total
+            out[i] += matrices[3, i, j] * laplacian[j] + matrices[1, i, j] * x[j] + matrices[2, i, j] * y[j]
 
 
 class Dense:
@@ -44,28 +57,25 @@ class Dense:
         self.error = 1e-12
         """Relative error of the displacements."""
         self.matrices = np.empty((4, x.size, x.size))
-        self._last: tuple[NDArray[np.int64], Dense] | None = None
         first = 0 if known is None else known.matrices.shape[1]
         if known is not None:
             self.matrices[:, :first, :first] = known.matrices
         _fill(x, y, patch, periodic, first, self.matrices)
 
-    def part(self, kept: NDArray[np.int64]) -> "Dense":
-        """Return the matrices of some of the asperities; those returned last are remembered."""
-        if self._last is None or not np.array_equal(self._last[0], kept):
-            part = copy(self)
-            part.matrices, part._last = np.ascontiguousarray(self.matrices[:, kept[:, None], kept]), None
-            self._last = kept, part
-        return self._last[1]
+    def part(self, kept: Integers) -> "Dense":
+        """Return the matrices of some of the asperities."""
+        part = copy(self)
+        part.matrices = np.ascontiguousarray(self.matrices[:, kept[:, None], kept])
+        return part
 
-    def beside(self, known: NDArray[np.int64]) -> "Beside":
+    def beside(self, known: Integers) -> "Beside":
         """Return them for the displacement of all points but those known."""
         return Beside(self.matrices, known)
 
     def none(self) -> "Dense":
         """Return matrices of 0."""
         none = copy(self)
-        none.matrices, none._last = np.broadcast_to(0.0, self.matrices.shape), None
+        none.matrices = np.broadcast_to(0.0, self.matrices.shape)
         return none
 
     def potential(self, load: Floats) -> Floats:
@@ -81,38 +91,38 @@ class Dense:
         """Return displacement, slopes and Laplacian at each point by point loads, [row, asperity]."""
         if not load.any():
             return np.zeros((4, load.size))
-        return (self.matrices.reshape(4 * load.size, load.size) @ load).reshape(
-            4, -1
-        )  # by one product of a matrix and a vector
+        whole = self.matrices.reshape(4 * load.size, load.size)
+        return np.asarray(whole @ load).reshape(4, -1)  # by one product of a matrix and a vector
 
     def of_moments(self, laplacian: Floats, along_x: Floats, along_y: Floats) -> Floats:
-        """Return the displacement by sources of the Laplacian and of the slopes of G."""
-        if not (laplacian.any() or along_x.any() or along_y.any()):
-            return np.zeros(laplacian.size)
-        _, x, y, lap = self.matrices
-        return np.asarray(lap @ laplacian + x @ along_x + y @ along_y)
+        """Return the displacement by sources of the Laplacian and of the slopes of G, of which the latter are odd."""
+        sources, size = np.concatenate([-along_x, -along_y, laplacian]), laplacian.size
+        return np.asarray(sources @ self.matrices[1:].reshape(3 * size, size))
 
 
 class Beside:
     """Matrices as they displace some of the points; for the others there are 0."""
 
-    def __init__(self, matrices: Floats, known: NDArray[np.int64]) -> None:
+    def __init__(self, matrices: Floats, known: Integers) -> None:
         self._matrices = matrices
         self._points = np.delete(np.arange(matrices.shape[1]), known)
 
     def potential(self, load: Floats) -> Floats:
         """Return the displacement by point loads."""
-        return self._sums(0, load)
+        return np.asarray(self._field(load, 1)[0])
 
     def field(self, load: Floats) -> Floats:
         """Return displacement, slopes and Laplacian by point loads, [row, asperity]."""
-        return np.array([self._sums(row, load) for row in range(4)])
+        return self._field(load, 4)
+
+    def _field(self, load: Floats, rows: int) -> Floats:
+        field = np.zeros((rows, load.size))
+        _field_at(self._matrices, self._points, np.flatnonzero(load), load, field)
+        return field
 
     def of_moments(self, laplacian: Floats, along_x: Floats, along_y: Floats) -> Floats:
         """Return the displacement by sources of the Laplacian and of the slopes of G."""
-        return self._sums(3, laplacian) + self._sums(1, along_x) + self._sums(2, along_y)
-
-    def _sums(self, row: int, source: Floats) -> Floats:
-        sums = np.zeros(source.size)
-        _sum_at(self._matrices[row], self._points, np.flatnonzero(source), source, sums)
-        return sums
+        displacement = np.zeros(laplacian.size)
+        sources = np.flatnonzero((laplacian != 0.0) | (along_x != 0.0) | (along_y != 0.0))
+        _of_moments_at(self._matrices, self._points, sources, laplacian, along_x, along_y, displacement)
+        return displacement

@@ -21,7 +21,7 @@ from roughmdr.interaction.jkr.factors import Factors
 from roughmdr.interaction.jkr.front import jkr_kernels
 from roughmdr.interaction.jkr.lone import Surface
 from roughmdr.interaction.jkr.newton import at_rest
-from roughmdr.interaction.jkr.tangent import Mixing, Tangent
+from roughmdr.interaction.jkr.tangent import Mixing, Tangent, _respond
 from roughmdr.kernels.adhesion import Adhesion
 from roughmdr.kernels.choose import choose
 from roughmdr.kernels.interface import Columns
@@ -244,22 +244,25 @@ def test_the_compiled_loops_are_their_sources(name: str) -> None:
     problem, state = guess(EXAMPLES[name], AT, 2)
     law, asperities = problem.kernels, problem.asperities
     field = state.field + 1e-4
-    rows = np.array([state.edge, state.edge, state.gap])
+    rows, above = np.array([state.edge, state.edge, state.gap]), asperities.height - state.separation
     found: list[list[Floats]] = []
     for run in (lambda function: function, plain):
         contacts = Contacts(*np.zeros((len(Contacts._fields), 4)))
         run(law.fill)(state.inside, state.t, state.load, field, WORK, asperities, contacts)
         compared = rows.copy()
-        largest = run(equilibrium._compare)(state.inside, law.pinned, WORK, contacts, problem.natural, compared)
+        given = above, contacts, problem.natural, compared
+        errors = run(equilibrium._compare)(state.inside, law.pinned, WORK, *given)
         block, cross = np.zeros((2, 4, 4))
         pairs = state.overlap.pairs
         run(factors._fill)(problem.coupling.matrices, pairs, 2, contacts, field[1:3], block, cross)
         matrix = block.copy()
         run(factors._eliminate)(cross, contacts.radius, np.full(4, -0.7), np.full(4, 0.3), matrix)
+        changes = np.zeros((5, 4))
+        run(_respond)(contacts, 0.01 * contacts.radius, 0.1 * state.load, field, 0.1 * field, 2, changes)
         states = [run(law.next_state)(0.0, True, Surface(2e-6, 0.1, 1e-8), WORK, 1, asperities)]
         states.append(run(law.next_state)(states[0], False, Surface(-1e-3), WORK, 1, asperities))
         states.append(run(law.lone_load)(state.t[1], Surface(2e-6, 0.1, 1e-8), WORK, 1, asperities))
-        found.append([np.array(contacts), compared, np.array([largest, *states]), block, matrix])
+        found.append([np.array(contacts), compared, np.array([*errors, *states]), block, matrix, changes])
     for compiled, source in zip(*found, strict=True):
         np.testing.assert_allclose(compiled, source, rtol=1e-12, atol=1e-14 * np.abs(source).max())
 

@@ -1,6 +1,7 @@
-"""A root between two points, narrowed down one value at a time (Illinois form of regula falsi).
+"""A root between two points, narrowed down one value at a time by regula falsi.
 
-Where the values jump, and it goes slowly, by halves.
+An end that stays twice in turn is weighted as N. Anderson and A. Bjorck have it (BIT 13 (1973) 253). Where the values
+jump, and it goes slowly, the interval is halved.
 """
 
 Point = tuple[float, float]
@@ -38,9 +39,10 @@ class Bracket:
     def narrow(self, point: float, value: float) -> None:
         """Put a point with its value in the place of that end whose value has the same sign."""
         end = 0 if (value > 0.0) == (self._true[0] > 0.0) else 1
-        other = 1 - end
+        other, before = 1 - end, self._true[end]
         self._ends[end], self._true[end] = (point, value), value
         if self._kept == other:  # twice in turn
-            self._ends[other] = self._ends[other][0], 0.5 * self._ends[other][1]
+            part = 1.0 - value / before if abs(value) < abs(before) else 0.5
+            self._ends[other] = self._ends[other][0], part * self._ends[other][1]
         self._kept = other
         self._widths.append(self.width)

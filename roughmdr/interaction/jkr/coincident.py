@@ -25,6 +25,7 @@ from roughmdr.interaction import close
 from roughmdr.interaction.close import FULL, NONE
 from roughmdr.interaction.interface import Asperities, CoupledKernels, kernel
 from roughmdr.numerics.arguments import Floats
+from roughmdr.numerics.jit import njit
 
 _FAR = 1e-6  # D^2/4s^2 beyond the inverse of this has no digits more
 _ROOT = math.sqrt(0.5 * math.pi)
@@ -80,7 +81,8 @@ class Near:
     def __init__(self, kernels: CoupledKernels, asperities: Asperities, natural: Floats, pairs: close.Pairs) -> None:
         self._kernels, self._asperities, self._natural = kernels, asperities, natural
         self.pairs = pairs
-        self._which, self._place = np.unique(pairs.members, return_inverse=True)
+        self._which, place = np.unique(pairs.members, return_inverse=True)
+        self._place = place.reshape(-1, 2)
         self._last: tuple[float, Overlap] | None = None
 
     def part(self, kept: NDArray[np.int64], asperities: Asperities, natural: Floats) -> "Near":
@@ -99,15 +101,31 @@ class Near:
         return self._last[1]
 
     def _found(self, separation: float) -> Overlap:
-        pairs, found = self.pairs, np.empty((2, self._which.size))
-        self._kernels.flanks(self._which, separation, self._natural, self._asperities, found)
-        reach, rate = found[:, self._place.reshape(-1, 2)].sum(axis=2)
-        u = (NONE - pairs.apart[:, 2] / reach) / (NONE - FULL)
-        on = np.flatnonzero(u > 0.0)
-        by_reach = np.where(u < 1.0, pairs.apart[:, 2] / reach**2 / (NONE - FULL), 0.0)[on]
-        u = np.minimum(u[on], 1.0)
-        falls = -6.0 * u * (1.0 - u) * by_reach * rate[on]
-        return Overlap(close.Pairs(pairs.members[on], pairs.apart[on], u * u * (3.0 - 2.0 * u), pairs.radius), falls)
+        pairs, reach = self.pairs, np.empty((2, self._which.size))
+        self._kernels.flanks(self._which, separation, self._natural, self._asperities, reach)
+        share, rate = np.zeros((2, pairs.share.size))
+        _share(pairs.apart, self._place, reach, share, rate)
+        on = np.flatnonzero(share)
+        if on.size < share.size:
+            pairs, rate = pairs._replace(members=pairs.members[on], apart=pairs.apart[on]), rate[on]
+        return Overlap(pairs._replace(share=share[on]), rate)
+
+
+@njit
+def _share(apart: Floats, place: NDArray[np.int64], reach: Floats, share: Floats, rate: Floats) -> None:
+    """Fill the shares of pairs and by how much they fall with the separation; ``reach`` holds radii and their slopes.
+
+    ``place`` [pair, 2] says where those of a pair are.
+    """
+    for number in range(share.size):
+        i, j = place[number]
+        whole, away = reach[0, i] + reach[0, j], apart[number, 2]
+        u = (NONE - away / whole) / (NONE - FULL)
+        if 0.0 < u < 1.0:
+            by_whole = away / (whole * whole) / (NONE - FULL)
+            rate[number] = -6.0 * u * (1.0 - u) * by_whole * (reach[1, i] + reach[1, j])
+        u = min(max(u, 0.0), 1.0)
+        share[number] = u * u * (3.0 - 2.0 * u)
 
 
 class Bells(NamedTuple):
@@ -144,3 +162,17 @@ def bells(pairs: close.Pairs, radius: Floats) -> Bells:
         first[far], second[far] = 0.5 / away**3, 0.0
     share = np.where(touching, pairs.share, 0.0)
     return Bells(share * value, share * first, share * second)
+
+
+@njit
+def add_bells(
+    pairs: close.Pairs, bells: Bells, radius: Floats, load: Floats, displacement: Floats, edge: Floats
+) -> None:
+    """Add what the loads of overlapping pairs do to each other: to the displacement, and to de/da."""
+    for number in range(pairs.share.size):
+        i, j = pairs.members[number]
+        displacement[i] += bells.value[number] * load[j]
+        displacement[j] += bells.value[number] * load[i]
+        pull = -2.0 / 3.0 * math.pi * load[i] * load[j] * bells.by_spread[number]
+        edge[i] += pull * radius[i]
+        edge[j] += pull * radius[j]

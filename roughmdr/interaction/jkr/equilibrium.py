@@ -4,6 +4,7 @@ The energy is stationary over the loads and, in equilibrium, over the contact ra
 """
 
 import math
+from dataclasses import dataclass, field, replace
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -19,11 +20,15 @@ from roughmdr.numerics.jit import njit
 
 Bools = NDArray[np.bool_]
 
+_ERROR = 1e-13  # error of an equilibrium, over the natural depth
+_ROUNDING = 16.0 * np.finfo(np.float64).eps  # rounding error of a gap, over the lengths of which it is the difference
+
 _EACH = ("inside", "t", "load", "outer", "field", "potential", "by_loads", "release", "edge", "gap")
 """Names of arrays over the asperities in a ``State``, beside its contacts."""
 
 
-class PairProblem(NamedTuple):
+@dataclass(eq=False)
+class PairProblem:
     """Asperities that adhere and feel each other, in units of the patch."""
 
     kernels: CoupledKernels
@@ -37,12 +42,16 @@ class PairProblem(NamedTuple):
     """w/(E* L)."""
     natural: Floats
     """Stretches of the edge of lone contacts as they are made, by which errors are measured."""
+    _last: "tuple[NDArray[np.int64], PairProblem] | None" = field(default=None, init=False)
 
     def part(self, kept: NDArray[np.int64]) -> "PairProblem":
-        """Return the problem of some of the asperities, alone."""
-        few, natural = Asperities(*(each[kept] for each in self.asperities)), self.natural[kept]
-        near = self.near.part(kept, few, natural)
-        return self._replace(asperities=few, coupling=self.coupling.part(kept), near=near, natural=natural)
+        """Return the problem of some of the asperities, alone; that returned last is remembered."""
+        if self._last is None or not np.array_equal(self._last[0], kept):
+            few, natural = Asperities(*(each[kept] for each in self.asperities)), self.natural[kept]
+            near = self.near.part(kept, few, natural)
+            coupling = self.coupling.part(kept)
+            self._last = kept, replace(self, asperities=few, coupling=coupling, near=near, natural=natural)
+        return self._last[1]
 
 
 class Step(NamedTuple):
@@ -88,28 +97,36 @@ class State(NamedTuple):
     """z - h - U less the indentation: 0 in equilibrium; out of contact, negative before first touch."""
     error: float
     """The largest residual over the natural depth."""
+    limit: float
+    """The error that rounding leaves."""
     factors: Any = None
     """The ``Factors`` of the tangent of the contacts at this state or near it."""
 
 
 @njit
-def _compare(inside: Bools, pinned: bool, work: float, contacts: Contacts, natural: Floats, rows: Floats) -> float:
-    """Fill ``rows`` of dl, the residuals of the edges (de/da before) and of the gaps (z - h - U before).
+def _compare(
+    inside: Bools, pinned: bool, work: float, above: Floats, contacts: Contacts, natural: Floats, rows: Floats
+) -> tuple[float, float]:
+    """Fill ``rows`` of dl, the residuals of the edges (de/da before) and of the gaps (the displacement U before).
 
-    Return the largest of the contacts; inf where there is none that a float holds.
+    Return the largest residual of the contacts, and that which rounding leaves, over the natural depth; inf where there
+    is none that a float holds. ``above`` is z - h.
     """
-    largest = 0.0
+    largest, limit = 0.0, _ERROR
     release, edge, gap = rows
     for i in range(inside.size):
         release[i] = math.sqrt(2.0 * math.pi * work * contacts.radius[i])
+        size = abs(above[i]) + abs(gap[i]) + abs(contacts.depth[i])
+        gap[i] = above[i] - gap[i]
         if not inside[i]:
             edge[i], gap[i] = 0.0, gap[i] + contacts.lift[i]
             continue
+        limit = max(limit, _ERROR + _ROUNDING * size / natural[i])
         edge[i] = 0.0 if pinned else edge[i] / (2.0 * release[i])
         gap[i] -= contacts.depth[i]
         residual = max(abs(edge[i]), abs(gap[i])) / natural[i]
         largest = max(largest, residual if math.isfinite(abs(edge[i]) + abs(gap[i])) else math.inf)
-    return largest
+    return largest, limit
 
 
 def no_field(problem: PairProblem) -> Floats:
@@ -129,7 +146,7 @@ def evaluate(
     """Return the contacts with their residuals; ``known`` are some, all in contact among them, whose field is known."""
     overlap = problem.near.at(separation)
     coupling: Sums = problem.coupling if known is None else problem.coupling.beside(known[0])
-    pairs, order = overlap.pairs, problem.order
+    pairs, order, heights = overlap.pairs, problem.order, problem.asperities.height
     field = field_of(coupling, pairs, order, load)
     if known is not None:
         field[:, known[0]] = known[1].field
@@ -138,23 +155,19 @@ def evaluate(
     problem.kernels.fill(inside, t, load, whole, problem.work, problem.asperities, contacts)
     by_loads, edge = field[0].copy(), contacts.edge + outer[4]
     found = coincident.bells(pairs, contacts.radius)
-    if pairs.members.size:
-        i, j = pairs.members.T
-        np.add.at(by_loads, i, found.value * load[j])
-        np.add.at(by_loads, j, found.value * load[i])
-        pull = -2.0 / 3.0 * math.pi * load[i] * load[j] * found.by_spread
-        np.add.at(edge, i, pull * contacts.radius[i])
-        np.add.at(edge, j, pull * contacts.radius[j])
+    if pairs.share.size:
+        coincident.add_bells(pairs, found, contacts.radius, load, by_loads, edge)
     potential = by_loads.copy()
     if order == 2:
         moments = 0.25 * contacts.second_moment, contacts.tilting * whole[1], contacts.tilting * whole[2]
         add_moments(coupling, pairs, moments, potential)
     if known is not None:
         potential[known[0]], by_loads[known[0]] = known[1].potential, known[1].by_loads
-    rows = np.array([edge, edge, problem.asperities.height - separation - potential - outer[0]])
-    error = _compare(inside, problem.kernels.pinned, problem.work, contacts, problem.natural, rows)
+    rows = np.array([edge, edge, potential + outer[0]])
+    pinned, natural = problem.kernels.pinned, problem.natural
+    error, limit = _compare(inside, pinned, problem.work, heights - separation, contacts, natural, rows)
     release, edge, gap = rows
-    totals = potential, by_loads, release, edge, gap, error
+    totals = potential, by_loads, release, edge, gap, error, limit
     return State(inside, t, load, separation, outer, field, contacts, overlap, found, *totals)
 
 
@@ -168,7 +181,7 @@ def among(problem: PairProblem, kept: NDArray[np.int64], few: State, outer: Floa
 
 def part_of(few: PairProblem, kept: NDArray[np.int64], state: State) -> State:
     """Return the state of some asperities, all that are in contact among them; ``among`` undoes it."""
-    overlap, contacts = few.near.at(state.separation), Contacts(*(each[kept] for each in state.contacts))
+    overlap, contacts = few.near.at(state.separation), Contacts(*np.array(state.contacts)[:, kept])
     return state._replace(
         contacts=contacts,
         overlap=overlap,

@@ -14,15 +14,7 @@ from roughmdr.interaction.jkr.tangent import Mixing, leading
 _SLOW = 0.12  # share of the error that a step leaves, above which the tangent is factored again
 _PATIENCE = 8  # steps with factors of their own, in which the residual has to halve
 _LARGEST_STEP = 0.3  # largest relative change of a state in one step
-_ROUNDING = 16.0 * np.finfo(np.float64).eps
-_ERROR = 1e-13  # error of an equilibrium, over the natural depth
-_AT_REST = 1e3  # residual over _ERROR that counts as rest where rounding lets no step go further
-
-
-def tolerance(problem: PairProblem, state: State) -> float:
-    """Return the residual over the natural depth that rounding leaves."""
-    size = np.abs(problem.asperities.height - state.separation) + np.abs(state.potential) + np.abs(state.contacts.depth)
-    return float(np.max(_ERROR + _ROUNDING * size / problem.natural, initial=_ERROR))
+_AT_REST = 1e3  # residual over that of rounding that counts as rest where rounding lets no step go further
 
 
 @np.errstate(all="ignore")  # a guess that no float holds leads nowhere
@@ -41,11 +33,10 @@ def newton(
     """
     mixing, errors, own = Mixing(), list[float](), False
     while state.t.size:
-        limit = tolerance(problem, state)
-        if state.error <= max(limit, error):
+        if state.error <= max(state.limit, error):
             break
         slow = bool(errors) and not state.error < _SLOW * errors[-1]
-        if slow and errors[-1] <= _AT_REST * limit:
+        if slow and errors[-1] <= _AT_REST * state.limit:
             break
         if not math.isfinite(state.error) or (
             own and len(errors) >= _PATIENCE and not state.error < 0.5 * errors[-_PATIENCE]

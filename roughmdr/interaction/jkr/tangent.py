@@ -6,12 +6,15 @@ Steps with it are found from those with its factors.
 import math
 
 import numpy as np
+from scipy.linalg.lapack import dgelss
 
 from roughmdr.interaction import close
 from roughmdr.interaction.coupling import add_moments, field_of
+from roughmdr.interaction.jkr.contacts import Contacts
 from roughmdr.interaction.jkr.equilibrium import Drive, PairProblem, State, Step
 from roughmdr.interaction.jkr.factors import Factors, Lead
 from roughmdr.numerics.arguments import Floats
+from roughmdr.numerics.jit import njit
 
 _MAX_STEPS = 50
 _REMEMBERED = 8  # steps of an iteration, by which the next is improved
@@ -28,16 +31,40 @@ class Mixing:
     def improved(self, step: Floats) -> Floats:
         """Return the way to where the steps so far, with this one, say that there is none; one without end as it is."""
         self._steps = [*self._steps[-_REMEMBERED:], step]
-        if not self._ways or not np.isfinite(self._steps).all():
+        steps, most = np.array(self._steps), min(_REMEMBERED, step.size)
+        if not self._ways or not np.isfinite(steps).all():
             return step
-        ways = np.array(self._ways[-_REMEMBERED:]).T
-        changes = np.diff(np.array(self._steps), axis=0).T
-        part = np.linalg.lstsq(changes, step, rcond=_RCOND)[0]
-        return np.asarray(step - (ways + changes) @ part)
+        changes = (steps[1:] - steps[:-1])[-most:]
+        part = dgelss(changes.T, step, cond=_RCOND)[1][: len(changes)]
+        return np.asarray(step - part @ (changes + self._ways[-most:]))
 
     def go(self, way: Floats) -> None:
         """Have the iteration go a way from its last point."""
         self._ways.append(way)
+
+
+@njit
+def _respond(c: Contacts, radius: Floats, load: Floats, whole: Floats, field: Floats, order: int, rows: Floats) -> None:
+    """Fill ``rows`` of the changes of de/da, of the gaps and, to second order, of the moments that displace others.
+
+    Radii and loads change, and the field on a contact, which is ``whole``, by ``field``.
+    """
+    edge, gap, bending, along_x, along_y = rows
+    for i in range(load.size):
+        a = c.radius[i]
+        edge[i] = c.edge_by_radius[i] * radius[i] + c.edge_by_load[i] * load[i]
+        gap[i] = c.edge_by_load[i] / math.pi * radius[i] - 0.5 * math.pi / a * load[i] - field[0, i]
+        if order == 1:
+            continue
+        x, y, bent = field[1, i], field[2, i], 0.25 * field[3, i]
+        along = whole[1, i] * x + whole[2, i] * y
+        edge[i] += c.edge_by_curvature[i] * bent + c.edge_by_tilt[i] * along
+        gap[i] -= 2.0 / 3.0 * a * a * bent - c.lift[i] * along
+        moment = c.moment_by_radius[i] * radius[i] + 2.0 / 3.0 * a * a * load[i]
+        bending[i] = 0.25 * (moment - 32.0 / (45.0 * math.pi) * a**5 * bent)
+        turn = c.edge_by_tilt[i] / math.pi * radius[i] + c.lift[i] * load[i]
+        along_x[i] = c.tilting[i] * x + turn * whole[1, i]
+        along_y[i] = c.tilting[i] * y + turn * whole[2, i]
 
 
 class Tangent:
@@ -53,35 +80,25 @@ class Tangent:
 
     def product(self, step: Step) -> tuple[Floats, Floats]:
         """Return the changes of de/da and of the gaps by a step; symmetric, the second times pi."""
-        problem, c, state = self.problem, self.state.contacts, self.state
-        a, load = c.radius, step.load
-        outer = self.drive.outer * step.along
-        edge = c.edge_by_radius * step.radius + c.edge_by_load * load + outer[4]
-        gap = c.edge_by_load / math.pi * step.radius - 0.5 * math.pi / a * load
-        gap -= self.drive.separation * step.along + outer[0]
+        problem, contacts, state, load = self.problem, self.state.contacts, self.state, step.load
         pairs, closer = state.overlap.pairs, -self.drive.separation * step.along
-        field, sharing = (
-            field_of(problem.coupling, pairs, problem.order, load),
-            pairs._replace(share=state.overlap.rate),
-        )
+        outer = self.drive.outer * step.along
+        field = field_of(problem.coupling, pairs, problem.order, load) + outer[:4]
+        sharing = pairs._replace(share=state.overlap.rate)
         if closer != 0.0 and pairs.share.size:
             close.take_from_field(sharing, closer * state.load, problem.order, field)
-        gap -= field[0]
+        edge, gap, bending, along_x, along_y = rows = np.zeros((5, load.size))
+        whole = state.field + state.outer[:4]
+        _respond(contacts, step.radius, load, whole, field, problem.order, rows)
+        edge += outer[4]
+        gap += closer
         if problem.order == 2:
-            field = field + outer[:4]
-            whole = state.field + state.outer[:4]
-            bent, tilt = 0.25 * field[3], field[1:3]
-            along = whole[1] * tilt[0] + whole[2] * tilt[1]
-            edge += c.edge_by_curvature * bent + c.edge_by_tilt * along
-            moment = c.moment_by_radius * step.radius + 2.0 / 3.0 * a * a * load - 32.0 / (45.0 * math.pi) * a**5 * bent
-            turn = c.edge_by_tilt / math.pi * step.radius + c.lift * load
-            moments = 0.25 * moment, c.tilting * tilt[0] + turn * whole[1], c.tilting * tilt[1] + turn * whole[2]
             potential = np.zeros_like(gap)
-            add_moments(problem.coupling, pairs, moments, potential)
+            add_moments(problem.coupling, pairs, (bending, along_x, along_y), potential)
             if closer != 0.0 and pairs.share.size:
-                standing = 0.25 * closer * c.second_moment, closer * c.tilting * whole[1], closer * c.tilting * whole[2]
-                close.take_from_moments(sharing, *standing, potential)
-            gap -= potential + 2.0 / 3.0 * a * a * bent - c.lift * along
+                bent, (x, y) = 0.25 * closer * contacts.second_moment, closer * contacts.tilting * whole[1:3]
+                close.take_from_moments(sharing, bent, x, y, potential)
+            gap -= potential
         if pairs.share.size:
             self._add_bells(step, closer, edge, gap)
         return edge, gap
