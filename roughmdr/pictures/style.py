@@ -85,11 +85,13 @@ def new_figure(width: float, height: float) -> "Figure":
 
 
 def set_title(figure: "Figure", title: str, notes: Sequence[str] = ()) -> None:
-    """Write a title, and smaller notes under it, above a figure, in lines that are not wider than the figure."""
+    """Write a title with notes above a figure: on one line where that is not wider than the figure, else on several."""
     letters = int(_LETTERS_PER_INCH * figure.get_figwidth())
-    figure.set_label("\n".join(map(escape_controls, notes)))  # for users who write the title elsewhere
-    lines = textwrap.wrap(escape_controls(title), int(0.9 * letters)) or [""]
-    lines += [line for note in notes for line in textwrap.wrap(escape_controls(note), letters)]
+    title, notes = escape_controls(title), [escape_controls(note) for note in notes]
+    figure.set_label("\n".join(notes))  # for users who write the title elsewhere
+    lines = ["; ".join([title, *notes])]
+    if len(lines[0]) > letters:
+        lines = [line for each in (title, *notes) for line in textwrap.wrap(each, int(0.9 * letters))]
     figure.suptitle("\n".join(lines), fontsize=10, parse_math=False)
 
 

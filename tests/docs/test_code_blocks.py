@@ -23,6 +23,7 @@ from roughmdr.scene.read import read
 ROOT = Path(__file__).parent.parent.parent
 PAGES = [ROOT / "README.md", *sorted(path for path in (ROOT / "docs").rglob("*.md") if "_build" not in path.parts)]
 LONG = [
+    "README",
     "adhesion",
     "analysis",
     "asperities",

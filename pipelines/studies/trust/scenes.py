@@ -80,10 +80,17 @@ def _normal(std: str) -> Table:
 _MEASURED = Surface(SelfAffine.of(hurst=0.8, long_wave=50e-6, short_wave=6e-6, rms_height=0.5e-6), 100e-6, 256, 2)
 _COARSE = Surface(SelfAffine.of(hurst=0.5, long_wave=5e-6, short_wave=0.2e-6, rms_slope=0.1), 10e-6, 128, 4)
 _GAUSSIAN = Surface(SelfAffine.of(hurst=0.8, long_wave=30e-6, short_wave=5e-6, rms_slope=0.1), 250e-6, 512)
+_RUBBER = {"count": 2000, "patch": "1 mm", "radius": {"distribution": "lognormal", "mean": "50 um", "std": "5 um"},
+           "height": _normal("1 um")}  # fmt: skip
+_SOFT = {"modulus": "3 MPa", "poisson": 0.49}
+_STICKY = {"model": "jkr", "work": "50 mJ/m^2"}
 _FILM = {"count": 240, "patch": "2 um", "radius": "120 nm", "height": _normal("5 nm")}
 
 CASES = (
-    Case("rubber_on_glass", _shipped("rubber_on_glass"), "pairs"),
+    Case("rubber",
+         _own("Rubber", _RUBBER, {}, material=_SOFT, adhesion=_STICKY,
+              path={"separation": {"steps": 200} | _stop(0.04), "unload": True}),
+         "pairs"),
     Case("gaussian_surface", _shipped("gaussian_surface", asperities={"patch": "0.25 mm", "long_wave": "30 um"}),
          "maps", "waves up to 30 um, on 0.25 mm", _GAUSSIAN),
     Case("measured_surface", _shipped("measured_surface", ("adhesion",), asperities={"file": "map.nc"}),
@@ -111,16 +118,14 @@ CASES = (
          "pairs"),
     Case("rough map", _own("Rough map", {"file": "map.nc"}, _stop(0.02)), "map", surface=_COARSE),
     Case("trap: pressed to 40 %",
-         _shipped("rubber_on_glass", ("adhesion",), asperities={"count": 400, "patch": "0.4472 mm"},
-                  path={"separation": {"start": "clear", "steps": 200} | _stop(0.4)}),
-         "boundary elements", "rubber_on_glass without adhesion, 400 asperities on 0.447 mm, as dense", points=192),
+         _own("Rubber", _RUBBER | {"count": 400, "patch": "0.4472 mm"}, _stop(0.4), material=_SOFT),
+         "boundary elements", "rubber without adhesion, 400 asperities on 0.447 mm, as dense", points=192),
     Case("trap: 3 sigma below",
-         _shipped("rubber_on_glass", ("adhesion",), asperities={"count": 400},
-                  path={"separation": {"start": "3 sigma", "stop": "-3 sigma", "steps": 200}}),
-         "boundary elements", "rubber_on_glass without adhesion, 400 asperities"),
+         _own("Rubber", _RUBBER | {"count": 400}, {"start": "3 sigma", "stop": "-3 sigma"}, material=_SOFT),
+         "boundary elements", "rubber without adhesion, 400 asperities"),
     Case("trap: modulus = 3",
-         _shipped("rubber_on_glass", material={"modulus": 3},
-                  path={"separation": {"start": "4 sigma", "stop": "1 sigma", "steps": 200}}),
-         "none", "rubber_on_glass down to 1 sigma"),
+         _own("Rubber", _RUBBER, {}, material=_SOFT | {"modulus": 3}, adhesion=_STICKY,
+              path={"separation": {"start": "4 sigma", "stop": "1 sigma", "steps": 200}, "unload": True}),
+         "none", "rubber down to 1 sigma"),
 )  # fmt: skip
 QUICK = ("hexagonal", "sticky film", "trap: modulus = 3")
