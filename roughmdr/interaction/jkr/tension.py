@@ -12,7 +12,8 @@ from roughmdr.interaction.jkr.newton import newton
 from roughmdr.interaction.jkr.tangent import Tangent
 
 _MAX_ROUNDS = 30
-_SLOPE_RTOL = 1e-10
+_SLOPE_RTOL = 1e-10  # error of the changes of loads of which the slope is the sum
+_SIGN_RTOL = 1e-5  # that where the sign of the slope is enough; the force would be off by its square
 _RTOL = 1e-7  # slope of the force at its minimum, relative; the value there is off by its square
 
 
@@ -25,12 +26,12 @@ class Tension(NamedTuple):
     radius_squares: float = 0.0
 
 
-def slope(problem: PairProblem, state: State, factors: Factors | None = None) -> float:
+def slope(problem: PairProblem, state: State, factors: Factors | None = None, rtol: float = _SLOPE_RTOL) -> float:
     """Return dF/dh of contacts."""
     if not state.t.size:
         return 0.0
     tangent = Tangent(problem, state, Drive(1.0, np.zeros_like(state.outer)))
-    return math.fsum(tangent.rate(factors or Factors(problem, state), _SLOPE_RTOL).load.tolist())
+    return math.fsum(tangent.rate(factors or Factors(problem, state), rtol).load.tolist())
 
 
 def of_state(state: State) -> Tension:
@@ -53,11 +54,13 @@ def largest_between(problem: PairProblem, state: State, new: State, best: Tensio
     ):
         return best
     few, state = alone(problem, state)
-    new = alone(problem, new)[1]
     factors = Factors(few, state)
-    low = slope(few, state, factors)
-    high = abs(low) if fold else slope(few, new, factors)  # at a fold it is infinite
-    if not low < 0.0 < high:
+    low = slope(few, state, factors, _SIGN_RTOL)
+    if not low < 0.0:
+        return best
+    new = alone(problem, new)[1]
+    high = abs(low) if fold else slope(few, new, factors, _SIGN_RTOL)  # at a fold it is infinite
+    if not high > 0.0:
         return best
     scale, still = max(-low, high), Drive(0.0, np.zeros_like(state.outer))
     root = Bracket((state.separation, low), (new.separation, high))
