@@ -181,13 +181,11 @@ def among(problem: PairProblem, kept: NDArray[np.int64], few: State, outer: Floa
 
 def part_of(few: PairProblem, kept: NDArray[np.int64], state: State) -> State:
     """Return the state of some asperities, all that are in contact among them; ``among`` undoes it."""
-    overlap, contacts = few.near.at(state.separation), Contacts(*np.array(state.contacts)[:, kept])
-    return state._replace(
-        contacts=contacts,
-        overlap=overlap,
-        bells=coincident.bells(overlap.pairs, contacts.radius),
-        **{name: getattr(state, name)[..., kept] for name in _EACH},
-    )
+    overlap, contacts = few.near.at(state.separation), Contacts(*np.take(state.contacts, kept, axis=1))
+    # np.take lays rows out as they are elsewhere: compiled code of other layouts would be compiled once more
+    each: dict[str, Any] = {name: np.take(getattr(state, name), kept, axis=-1) for name in _EACH}
+    bells = coincident.bells(overlap.pairs, contacts.radius)
+    return state._replace(contacts=contacts, overlap=overlap, bells=bells, **each)
 
 
 def alone(problem: PairProblem, state: State) -> tuple[PairProblem, State]:

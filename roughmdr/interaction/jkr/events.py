@@ -63,7 +63,7 @@ class _Path:
     def __init__(self, problem: PairProblem, state: State, drive: Drive) -> None:
         self.problem, self.kept = problem, np.flatnonzero(state.inside)
         self.outer = state.outer, drive.outer
-        self.drive = Drive(drive.separation, drive.outer[:, self.kept])
+        self.drive = Drive(drive.separation, np.take(drive.outer, self.kept, axis=1))
         self.few, begin = alone(problem, state)
         self.begin = Place(begin, begin.factors or Factors(self.few, begin), 0.0)
 
