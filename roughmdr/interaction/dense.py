@@ -65,7 +65,7 @@ class Dense:
     def part(self, kept: Integers) -> "Dense":
         """Return the matrices of some of the asperities."""
         part = copy(self)
-        part.matrices = np.ascontiguousarray(self.matrices[:, kept[:, None], kept])
+        part.matrices = self.matrices.take(kept, axis=1).take(kept, axis=2)
         return part
 
     def beside(self, known: Integers) -> "Beside":
