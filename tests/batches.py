@@ -24,10 +24,11 @@ from roughmdr.batch import tasks
 from roughmdr.batch.plan import make_plan
 from roughmdr.batch.resume.store import store_folder
 from roughmdr.batch.task_result import TaskResult
+from roughmdr.errors import OutOfRange
 from roughmdr.runner import local
 from roughmdr.runner.backend import Backend
 from roughmdr.runner.run import execute
-from roughmdr.scene import read
+from roughmdr.scene import Scene, read
 from roughmdr.storage.files import destination
 
 _CLI = "from roughmdr.cli import main; main()"
@@ -75,6 +76,18 @@ def interrupted(
     assert store_folder(destination(out)).is_dir()
 
 
+def let_fail(monkeypatch: pytest.MonkeyPatch, fails: Callable[[Scene, int], bool]) -> None:
+    """Let runs fail in this process: those of scenes and realisations of which ``fails`` says so."""
+    simulate_realization = tasks.simulate_realization
+
+    def failing(given: Scene, path: Any, realization: int, *others: Any) -> Any:
+        if fails(given, realization):
+            raise OutOfRange("it must fail")
+        return simulate_realization(given, path, realization, *others)
+
+    monkeypatch.setattr(tasks, "simulate_realization", failing)
+
+
 class Batch:
     """A ``roughmdr run`` in a session of its own, with tasks of a given number of runs."""
 
@@ -113,6 +126,13 @@ class Batch:
         status, said = self.end()
         assert status == 0, said
         return computed(said)
+
+    def fail(self, *statuses: int) -> str:
+        """Wait for its end, which must be one of these exit statuses and no traceback: what it said."""
+        status, said = self.end()
+        assert status in statuses, said
+        assert_no_traceback(said)
+        return said
 
     def kill(self) -> None:
         """Kill it, unless it has ended by itself."""
@@ -178,19 +198,22 @@ def assert_no_traceback(said: str) -> None:
     assert "Error:" not in said, said
 
 
-def assert_result(folder: Path, base: xr.Dataset) -> None:
-    """The result has the bits of an undisturbed run."""
+def assert_result(folder: Path, base: xr.Dataset, *, alone: bool = False) -> None:
+    """The result has the bits of an undisturbed run; nothing else is left, if it must be alone."""
     with xr.open_dataset(folder / "out.nc") as file:
         found = file.load()
     assert_same(found, base)
+    if alone:
+        assert_clean(folder)
 
 
-def assert_same(found: xr.Dataset, base: xr.Dataset) -> None:
-    """Same bits but for the clock."""
-    xr.testing.assert_identical(
-        found.drop_vars("run_time"), base.drop_vars("run_time").assign_attrs(history=found.attrs["history"])
-    )
-    for name, array in base.drop_vars("run_time").data_vars.items():
+def assert_same(found: xr.Dataset, base: xr.Dataset, but: tuple[str, ...] = ("history", "checksum")) -> None:
+    """Same bits but for the clock and some attributes."""
+    found, base = (each.drop_vars("run_time").drop_attrs(deep=False).assign_attrs(
+        {name: value for name, value in each.attrs.items() if name not in but}
+    ) for each in (found, base))  # fmt: skip
+    xr.testing.assert_identical(found, base)
+    for name, array in base.data_vars.items():
         assert found[name].to_numpy().tobytes() == array.to_numpy().tobytes(), name
 
 

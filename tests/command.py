@@ -41,3 +41,10 @@ def in_a_process(*arguments: object, cwd: Path) -> subprocess.CompletedProcess[s
     """Call the command line in a process of its own."""
     command = [*ROUGHMDR, *map(str, arguments)]
     return subprocess.run(command, cwd=cwd, capture_output=True, text=True, timeout=PATIENCE, check=False)
+
+
+def said(*arguments: object, cwd: Path | str = ".") -> str:
+    """Call the command line in this process, which must succeed: what it says on both streams."""
+    done = roughmdr(*arguments, cwd=cwd)
+    assert done.returncode == 0, done.stderr
+    return done.stdout + done.stderr

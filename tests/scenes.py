@@ -6,6 +6,9 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+import roughmdr as rm
+from roughmdr.shapes import SHAPES, Shape
+
 ASPERITIES: dict[str, Any] = {
     "source": "random",
     "shape": "paraboloid",
@@ -52,3 +55,16 @@ def ensemble(height: Any, area: float | None = 1e-4, shape: str = "paraboloid", 
     }
     attrs: dict[str, Any] = {"shape": shape} | ({} if area is None else {"nominal_area": area})
     return xr.Dataset({"height": ("asperity", z), **columns}, attrs=attrs)
+
+
+def shapes_of(asperities: xr.Dataset) -> list[Shape]:
+    """Return the shape of each asperity of an ensemble."""
+    names, kind = [str(name) for name in asperities if name != "height"], SHAPES[asperities.attrs["shape"]]
+    count = asperities.sizes["asperity"]
+    return [kind(**{name: float(asperities[name][i]) for name in names}) for i in range(count)]
+
+
+def detachment_depths(asperities: xr.Dataset, **law: Any) -> np.ndarray:
+    """Return how far [m] each contact of an ensemble is stretched under fixed grips when it lets go."""
+    folds = [rm.pull_off(shape, **law, control="displacement").indentation for shape in shapes_of(asperities)]
+    return -np.array(folds, dtype=float)

@@ -7,10 +7,9 @@ from typing import Any
 
 import numpy as np
 import pytest
-import tomli_w
 import xarray as xr
-from batches import assert_same
-from command import roughmdr
+from batches import write_scene
+from command import said
 from forms import large
 from scenes import ASPERITIES, scene
 
@@ -41,17 +40,6 @@ def coupled(**changes: Any) -> dict[str, Any]:
 @pytest.fixture(scope="module")
 def base() -> xr.Dataset:
     return rm.run(coupled())
-
-
-@pytest.mark.large
-@pytest.mark.parametrize(("workers", "runs_per_task"), [large(1, 1), large(1, 4), (2, 2)])
-def test_the_same_bits_for_any_workers_and_tasks(
-    base: xr.Dataset, tmp_path: Path, workers: int, runs_per_task: int
-) -> None:
-    out = tmp_path / "out.nc"
-    execute(make_plan(read(coupled())), out, Backend(workers=workers, runs_per_task=runs_per_task))
-    with xr.open_dataset(out) as found:
-        assert_same(found.load(), base)
 
 
 @pytest.mark.large
@@ -116,10 +104,10 @@ print("loaded:", *sorted(sys.modules))
 @pytest.mark.parametrize("interaction", [None, large(PAIRWISE)])
 def test_without_interaction_nothing_of_it_is_imported(tmp_path: Path, interaction: dict[str, Any] | None) -> None:
     table = coupled(interaction=interaction, batch=None)
-    (tmp_path / "scene.toml").write_text(tomli_w.dumps(table))
+    write_scene(tmp_path, table)
     command = [sys.executable, "-c", _IMPORTED, "scene.toml"]
-    said = subprocess.run(command, cwd=tmp_path, check=True, capture_output=True, text=True).stdout
-    loaded = set(said[said.index("loaded:") :].split())
+    told = subprocess.run(command, cwd=tmp_path, check=True, capture_output=True, text=True).stdout
+    loaded = set(told[told.index("loaded:") :].split())
     solvers = {f"roughmdr.interaction.{name}" for name in ("solve", "mesh", "dense", "newton", "close", "contacts")}
     assert (solvers <= loaded) == (interaction is not None)
     if interaction is None:
@@ -190,7 +178,7 @@ def test_contacts_that_make_and_lose_each_other_without_end_are_lost(
 
 @pytest.mark.large
 def test_a_plan_says_where_no_equilibrium_is_found(tmp_path: Path) -> None:
-    (tmp_path / "scene.toml").write_text(tomli_w.dumps(overlapping(1.0)))
-    told = roughmdr("plan", str(tmp_path / "scene.toml")).stdout
+    write_scene(tmp_path, overlapping(1.0))
+    told = said("plan", "scene.toml", cwd=tmp_path)
     assert "pressure     not known at closest approach: no equilibrium is found there in 1 of 1 cells" in told
     assert "nan" not in told

@@ -6,9 +6,9 @@ from typing import Any
 
 import numpy as np
 import pytest
-import tomli_w
 import xarray as xr
-from click.testing import CliRunner
+from batches import write_scene
+from command import said
 from figures import adhesion_range as study
 from forms import large
 from hypothesis import given, settings, strategies as st
@@ -18,7 +18,6 @@ from scenes import ensemble, scene
 import roughmdr as rm
 from roughmdr.aggregate.tabor import SHIFT
 from roughmdr.batch.plan import make_plan
-from roughmdr.cli import main
 from roughmdr.scene import read
 
 DATA = Path(__file__).parent.parent / "data"
@@ -233,18 +232,6 @@ def test_the_same_physics_in_other_units(tabor: float, length: float, stiff: flo
     np.testing.assert_allclose(other.force / (e * l * l), one.force, rtol=1e-9, atol=1e-10 * scale)
 
 
-def test_the_sum_does_not_depend_on_workers_and_keeps_its_bound() -> None:
-    adhesion = {"model": "dugdale", "work": "50 mJ/m^2", "range": "10 nm"}
-    one, two = (
-        rm.run(scene(adhesion=adhesion, batch={"realizations": 3}), workers=workers).drop_vars("run_time")
-        for workers in (1, 2)
-    )
-    xr.testing.assert_identical(one.drop_attrs(), two.drop_attrs())
-    assert float(one.numerical_error.max()) < 1e-11
-    assert (one.adhesion_law == 2).all()
-    assert float(one.tabor_number.min()) == pytest.approx(float(one.tabor_number.max()), rel=0.5)
-
-
 @pytest.mark.parametrize("name", KINDS)
 def test_the_bound_on_the_error_holds(name: str) -> None:
     """Against forces of 25 digits along a retraction, the asperity many times over at heights of its own."""
@@ -353,12 +340,10 @@ def test_next_to_the_fold_every_float_has_its_contact(radius: float) -> None:
 def test_a_sweep_over_the_range_from_the_command_line(tmp_path: Path) -> None:
     adhesion = {"model": "auto", "work": "50 mJ/m^2", "range": "1 nm"}
     table = scene(adhesion=adhesion, sweep={"adhesion.range": ["0.1 nm", "1 um"]}, batch=None)
-    (tmp_path / "scene.toml").write_text(tomli_w.dumps(table))
-    out = tmp_path / "out.nc"
-    done = CliRunner().invoke(main, ["run", str(tmp_path / "scene.toml"), "-o", str(out)])
-    assert done.exit_code == 0, done.output
-    assert "adhesion     jkr in 1, dugdale in 1 of 2; smallest Tabor number" in done.output
-    with xr.open_dataset(out) as result:
+    write_scene(tmp_path, table)
+    told = said("run", "scene.toml", "-o", "out.nc", cwd=tmp_path)
+    assert "adhesion     jkr in 1, dugdale in 1 of 2; smallest Tabor number" in told
+    with xr.open_dataset(tmp_path / "out.nc") as result:
         assert result.adhesion_law.to_numpy().ravel().tolist() == [1, 2]
     assert any("range of the adhesion" in line for line in make_plan(read(table)).left_out)
 

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 import xarray as xr
 from hypothesis import given, settings, strategies as st
-from scenes import ensemble
+from scenes import detachment_depths, ensemble
 
 import roughmdr as rm
 
@@ -25,16 +25,6 @@ def rough(kind: str, count: int) -> xr.Dataset:
     rng = np.random.default_rng(41)
     columns = {name: rng.uniform(*ends, count) for name, ends in COLUMNS[kind].items()}
     return ensemble(rng.normal(0.0, 1e-6, count), shape=kind, **columns)
-
-
-def folds(data: xr.Dataset) -> np.ndarray:
-    """How far each contact is stretched when it lets go [m]."""
-    kind = {"paraboloid": rm.Paraboloid, "cone": rm.Cone, "power_law": rm.PowerLaw}[data.attrs["shape"]]
-    names = [name for name in data.data_vars if name != "height"]
-    shapes = [kind(**{name: float(data[name][i]) for name in names}) for i in range(data.sizes["asperity"])]
-    return -np.array(
-        [float(rm.pull_off(shape, effective_modulus=E, work=W, control="displacement").indentation) for shape in shapes]
-    )
 
 
 def down(stops: np.ndarray) -> Iterator[tuple[np.ndarray, np.ndarray]]:
@@ -59,7 +49,7 @@ def test_the_work_of_a_closed_load_cycle_is_what_the_jumps_dissipate(kind: str) 
     data = rough(kind, 40)
     z, lowest = data.height.to_numpy(), -0.3e-6
     made = np.sort(z[z > lowest])[::-1]
-    lost = np.sort((z + folds(data))[z >= lowest])
+    lost = np.sort((z + detachment_depths(data, effective_modulus=E, work=W))[z >= lowest])
     pieces = [*down(np.array([*made, lowest])), *up(np.array([lowest, *lost]))]
     path = np.concatenate([*(h for h, _ in pieces), [lost[-1] * 1.001]])
     weights = np.concatenate([*(w for _, w in pieces), [0.0]])

@@ -5,6 +5,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 import xarray as xr
+from scenes import detachment_depths
 
 import roughmdr as rm
 from roughmdr.aggregate.problem import Problem
@@ -143,18 +144,7 @@ def test_the_work_of_a_closed_cycle_is_what_contacts_and_machine_lose(kind: str,
     ensemble = Ensemble.from_dataset(data)
     demand = -cycle if dead else cycle
     stands, jumps = separations_of(Problem(ensemble, E, Adhesion(W)), machine, demand, jumps=True)
-    shape = {"paraboloid": rm.Paraboloid, "cone": rm.Cone, "power_law": rm.PowerLaw, "flat_punch": rm.FlatPunch}
-    names = list(COLUMNS[kind])
-    depth = [
-        -float(
-            rm.pull_off(
-                shape[data.attrs["shape"]](**{name: float(data[name][i]) for name in names}),
-                control="displacement",
-                **material,
-            ).indentation
-        )
-        for i in range(9)
-    ]
+    depth = detachment_depths(data, **material)
     z = data.height.values
     clear = float((z + depth).max()) * (1.0 + 1e-9)
     touch = float(z.max())

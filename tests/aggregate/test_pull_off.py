@@ -9,13 +9,12 @@ import pytest
 import xarray as xr
 from forms import large
 from hypothesis import given, settings, strategies as st
-from scenes import WIDER_SHAPES, ensemble
+from scenes import WIDER_SHAPES, detachment_depths, ensemble
 
 import roughmdr as rm
 from roughmdr.loading.path import LoadingPath
 from roughmdr.loading.pull_off import unloadings
 from roughmdr.loading.staircase import risen, staircase
-from roughmdr.shapes import SHAPES
 
 E, W = 4e6, 0.05
 b = 2e-6
@@ -29,19 +28,9 @@ CASES = [(kind, {}) for kind in COLUMNS] + [("paraboloid", {"adhesion": "dugdale
 FINE = np.linspace(0.0, 1.0, 120)[1:-1]
 
 
-def detachments(asperities: xr.Dataset, law: dict[str, Any]) -> np.ndarray:
-    """The separation at which each contact is lost, from asperity to asperity."""
-    names = [name for name in asperities if name != "height"]
-    depths = []
-    for i in range(asperities.sizes["asperity"]):
-        shape = SHAPES[asperities.attrs["shape"]](**{name: float(asperities[name][i]) for name in names})
-        depths.append(-float(rm.pull_off(shape, **law, control="displacement").indentation))
-    return np.asarray(asperities.height.to_numpy() + np.array(depths))
-
-
 def plain(asperities: xr.Dataset, path: np.ndarray, law: dict[str, Any]) -> float:
     """The largest tension of all rises of the flat along a path."""
-    off, lowest = detachments(asperities, law), 0.0
+    off, lowest = asperities.height.to_numpy() + detachment_depths(asperities, **law), 0.0
     rises = [i for i in range(1, path.size) if path[i] > path[i - 1]]
     for i in rises:
         low, high = path[i - 1], path[i]
@@ -75,7 +64,7 @@ def test_it_is_that_of_the_plain_way(kind: str, extra: dict[str, Any], count: in
     law: dict[str, Any] = {"effective_modulus": E, "work": W, **extra}
     for seed in range(3):
         asperities = rough(kind, count, seed)
-        off = detachments(asperities, law)
+        off = asperities.height.to_numpy() + detachment_depths(asperities, **law)
         loading = np.linspace(off.max() * 1.1 + 1e-7, float(asperities.height.min()) - 1e-7, steps)
         found = rm.load_separation(asperities, separation=loading, unload=True, **law)
         path = np.concatenate([loading, loading[::-1]])
@@ -106,7 +95,8 @@ def test_of_several_unloadings_it_is_the_largest(count: int) -> None:
     rng = np.random.default_rng(3)
     for seed in range(4):
         asperities = rough("paraboloid", count, seed)
-        top, low = detachments(asperities, law).max() + 1e-8, float(asperities.height.min()) - 3e-7
+        z = asperities.height.to_numpy()
+        top, low = (z + detachment_depths(asperities, **law)).max() + 1e-8, z.min() - 3e-7
         turns = rng.uniform(low, top, 7)
         path = np.unique(np.round(turns, 12))[rng.permutation(np.unique(np.round(turns, 12)).size)]
         path = np.concatenate([[top], path, [low, top]])

@@ -8,7 +8,7 @@ import xarray as xr
 from forms import large_where_compiled
 from hypothesis import given, settings, strategies as st
 from numba.core.dispatcher import Dispatcher
-from scenes import ensemble
+from scenes import ensemble, shapes_of
 
 import roughmdr as rm
 from roughmdr.aggregate import LoadingPath, compute, loop, totals
@@ -23,19 +23,13 @@ _OWN = ("energy", "error")  # these have their own
 ALL = tuple(name for name in CURVE_VARIABLES if not any(part in name for part in _OWN))
 
 
-def shape_of(data: xr.Dataset, i: int) -> rm.Paraboloid | rm.Cone | rm.PowerLaw:
-    kind = {"paraboloid": rm.Paraboloid, "cone": rm.Cone, "power_law": rm.PowerLaw}[data.attrs["shape"]]
-    return kind(**{name: float(data[name][i]) for name in data.data_vars if name != "height"})
-
-
 def twin(data: xr.Dataset, path: np.ndarray, effective_modulus: float, work: float) -> dict[str, np.ndarray]:
     """One asperity after the other, one step after the other, with a memory of its own."""
     totals = {
         name: np.zeros(path.size)
         for name in ("force", "contact_area", "contact_count", "stiffness", "contact_radius_sum")
     }
-    for i in range(data.sizes["asperity"]):
-        z, shape = float(data.height[i]), shape_of(data, i)
+    for z, shape in zip(data.height.to_numpy().tolist(), shapes_of(data), strict=True):
         contacts = rm.indent(shape, effective_modulus=effective_modulus, work=work, indentation=z - path)
         fold = float(
             rm.pull_off(shape, effective_modulus=effective_modulus, work=work, control="displacement").indentation
@@ -44,12 +38,8 @@ def twin(data: xr.Dataset, path: np.ndarray, effective_modulus: float, work: flo
         for m, delta in enumerate(z - path):
             held = (delta >= 0.0 or (held and delta > fold)) if work else delta > 0.0
             if held:
-                for name, variable in (
-                    ("force", "force"),
-                    ("contact_area", "contact_area"),
-                    ("stiffness", "stiffness"),
-                ):
-                    totals[name][m] += float(contacts[variable][m])
+                for name in ("force", "contact_area", "stiffness"):
+                    totals[name][m] += float(contacts[name][m])
                 totals["contact_radius_sum"][m] += float(contacts.contact_radius[m])
                 totals["contact_count"][m] += 1.0
     return totals
@@ -138,19 +128,6 @@ def test_order_and_asperities_out_of_reach_change_no_bit(work: float) -> None:
     for name in ALL:
         np.testing.assert_array_equal(shuffled[name], whole[name])
         np.testing.assert_array_equal(more[name], whole[name])
-
-
-def test_the_parts_of_an_ensemble_add_up_to_the_whole() -> None:
-    rng = np.random.default_rng(13)
-    data = ensemble(rng.normal(0.0, 1e-6, 1000), radius=rng.uniform(3e-5, 8e-5, 1000))
-    path = np.linspace(3e-6, -1e-6, 20)
-
-    def law(part: xr.Dataset) -> xr.Dataset:
-        return rm.load_separation(part, separation=path, effective_modulus=E, work=W, unload=True)
-
-    parts = law(data.isel(asperity=slice(0, 317))) + law(data.isel(asperity=slice(317, None)))
-    for name in ("force", "contact_area", "contact_count"):
-        np.testing.assert_allclose(parts[name], law(data)[name], rtol=1e-13, atol=0.0)
 
 
 @pytest.mark.parametrize("work", [0.0, W])

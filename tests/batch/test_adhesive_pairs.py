@@ -6,9 +6,9 @@ from typing import Any
 
 import numpy as np
 import pytest
-import tomli_w
 import xarray as xr
-from command import roughmdr
+from batches import write_scene
+from command import said
 from forms import large
 from scenes import scene
 
@@ -34,21 +34,6 @@ def sticky(realizations: int = 4, **changes: Any) -> dict[str, Any]:
 
 
 @pytest.mark.large
-def test_results_are_bit_for_bit_those_of_any_number_of_workers_and_of_a_resume(tmp_path: Path) -> None:
-    one = rm.run(sticky(), out=tmp_path / "one.nc", workers=1)
-    two = rm.run(sticky(), out=tmp_path / "two.nc", workers=2)
-    rm.run(sticky(2), out=tmp_path / "resumed.nc", workers=2)
-    resumed = rm.run(sticky(), out=tmp_path / "resumed.nc", workers=2)
-    for other in (two, resumed):
-        xr.testing.assert_identical(
-            one.drop_vars("run_time").drop_attrs(deep=False), other.drop_vars("run_time").drop_attrs(deep=False)
-        )
-    assert int((one.avalanche_count > 0).sum()) == 4
-    assert (one.avalanche_size_max >= 1).all()
-    assert float(one.marked_steps.max()) == 0.0
-
-
-@pytest.mark.large
 def test_energy_is_lost_at_jumps_only(tmp_path: Path) -> None:
     """With twice the steps jumps lose as much, to where they are located; the loss never falls."""
     fine = {"separation": {**PATH["separation"], "steps": 23}, "unload": True}
@@ -58,22 +43,19 @@ def test_energy_is_lost_at_jumps_only(tmp_path: Path) -> None:
     np.testing.assert_allclose(first.dissipated_energy[:, -1], lost[:, -1], rtol=1e-9)
     np.testing.assert_allclose(first.pull_off_force, second.pull_off_force, rtol=1e-9)
     np.testing.assert_array_equal(first.avalanche_count, second.avalanche_count)
+    assert (first.avalanche_count > 0).all()
+    assert (first.avalanche_size_max >= 1).all()
+    assert float(first.marked_steps.max()) == 0.0
 
 
 @pytest.mark.large
 def test_commands_foresee_and_describe_them(tmp_path: Path) -> None:
-    (tmp_path / "scene.toml").write_text(tomli_w.dumps(sticky()))
-
-    def command(*words: str) -> str:
-        done = roughmdr(*words, cwd=tmp_path)
-        assert done.returncode == 0, done.stderr
-        return done.stdout
-
-    plan = command("plan", "scene.toml")
+    write_scene(tmp_path, sticky())
+    plan = said("plan", "scene.toml", cwd=tmp_path)
     assert "asperities are coupled in pairs" in plan
     assert "time" in plan
-    assert "avalanches   up to" in command("run", "scene.toml", "-o", "out.nc", "--workers", "2")
-    assert "avalanches   up to" in command("info", "out.nc")
+    assert "avalanches   up to" in said("run", "scene.toml", "-o", "out.nc", "--workers", "2", cwd=tmp_path)
+    assert "avalanches   up to" in said("info", "out.nc", cwd=tmp_path)
 
 
 def test_contacts_that_overlap_as_soon_as_they_are_made_are_told() -> None:

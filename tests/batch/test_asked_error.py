@@ -8,23 +8,21 @@ from typing import Any
 import numpy as np
 import pytest
 import xarray as xr
-from batches import interrupted
-from click.testing import CliRunner
+from batches import assert_same, let_fail
+from command import said
 from scenes import ASPERITIES, scene
 from studies.accuracy import SCENES, force_samples, realizations_taken
 
 import roughmdr as rm
 from roughmdr.asperity.contact import Contact
-from roughmdr.batch import task_result, tasks
+from roughmdr.batch import tasks
 from roughmdr.batch.costs import seconds
 from roughmdr.batch.plan import make_plan
 from roughmdr.batch.rounds import Rounds
 from roughmdr.batch.stopping_rule import FIRST, bound, next_count
 from roughmdr.batch.tasks import prepare_all
-from roughmdr.cli import main
 from roughmdr.ensemble.nodes import Nodes
 from roughmdr.expected import node
-from roughmdr.runner import local
 from roughmdr.runner.backend import Backend
 from roughmdr.runner.run import execute
 from roughmdr.scene import read
@@ -56,12 +54,6 @@ def go(
     table: dict[str, Any], out: Path | None = None, runs_per_task: int | None = None, workers: int = 2
 ) -> xr.Dataset:
     return execute(make_plan(read(table)), out, Backend(workers=workers, runs_per_task=runs_per_task)).to_xarray()
-
-
-def assert_same(found: xr.Dataset, fresh: xr.Dataset) -> None:
-    """To the last bit, in all but the clock."""
-    dropped = [each.drop_vars("run_time").assign_attrs(history="", checksum="") for each in (found, fresh)]
-    xr.testing.assert_identical(*dropped)
 
 
 FILE = {"source": "file", "file": "ensemble.nc"}
@@ -105,18 +97,6 @@ def test_the_expected_law_is_taken_where_there_is_one(keep: str) -> None:
     assert "warnings" not in found.attrs or "was not reached" not in found.attrs["warnings"]
 
 
-@pytest.mark.large
-@pytest.mark.parametrize("keep", ["curves", "statistics"])
-def test_where_the_expected_law_is_not_right_enough_asperities_are_drawn(keep: str) -> None:
-    asked = {"asperities": {**FEW, "correlation": {"radius": 1.0}}, "output": kept(keep)}
-    found = go(asking(2e-3, None, 100, **asked))
-    assert methods(found) == ["stratified"]
-    assert found.realization_count == 100
-    drawn = go(asking(2e-3, "stratified", 100, **asked))
-    assert_same(found.assign_attrs(scene=""), drawn.assign_attrs(scene=""))
-    assert "expected" not in found.attrs["accuracy"]
-
-
 def test_equal_asperities_of_one_height_are_not_drawn() -> None:
     assert methods(go(asking(0.1, None, asperities=LEVEL))) == ["stratified"]
     found = go(asking(1e-9, None, asperities={**LEVEL, "radius": "50 um", "count": 10}))
@@ -127,6 +107,8 @@ def test_equal_asperities_of_one_height_are_not_drawn() -> None:
 def test_each_cell_has_the_method_that_fits_it() -> None:
     table = asking(2e-3, None, 100, asperities={**FEW, "correlation": {"radius": 0.0}})
     found = go({**table, "sweep": {"asperities.correlation.radius": [0.5, 1.0]}})
+    drawn = go(asking(2e-3, "stratified", 100, asperities={**FEW, "correlation": {"radius": 1.0}}))
+    np.testing.assert_array_equal(found.force[1], drawn.force)
     assert methods(found) == ["expected", "stratified"]
     assert "realisations in 1 of them; the expected law, which has no noise, in 1 of them" in found.attrs["accuracy"]
     assert found.status[0].to_numpy().tolist() == [0] + [2] * (found.sizes["realization"] - 1)
@@ -317,43 +299,6 @@ def test_the_force_need_not_be_asked_for(keep: str) -> None:
             xr.testing.assert_identical(without[name], with_force[name])
 
 
-def split(table: dict[str, Any], runs_per_task: int, workers: int) -> xr.Dataset:
-    return go(table, runs_per_task=runs_per_task, workers=workers)
-
-
-@pytest.mark.large
-@pytest.mark.parametrize("keep", ["curves", "statistics"])
-def test_the_outcome_depends_on_no_workers_and_no_tasks(keep: str) -> None:
-    table = asking(0.05, sweep={"asperities.count": [30, 300]}, output=kept(keep))
-    one = split(table, 1000, 1)
-    for runs_per_task, workers in ((1, 2), (7, 3), (16, 1)):
-        assert_same(split(table, runs_per_task, workers), one)
-
-
-@pytest.mark.large
-@pytest.mark.parametrize("keep", ["curves", "statistics"])
-@pytest.mark.parametrize("after", [1, 4, 9])
-def test_the_outcome_depends_on_no_interruption(
-    after: int, keep: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    table, out = asking(0.05, sweep={"asperities.count": [30, 300]}, output=kept(keep)), tmp_path / "out.nc"
-    compute, done = tasks.compute, 0
-    interrupted(table, out, after, monkeypatch, runs_per_task=8)
-
-    def counting(task: tasks.Task) -> task_result.TaskResult:
-        nonlocal done
-        done += sum(runs.last - runs.first for runs in task.ranges)
-        return compute(task)
-
-    with monkeypatch.context() as patched:
-        patched.setattr(local, "compute", counting)
-        found = go(table, out, runs_per_task=5)
-    assert done <= int(found.realization_count.sum()) - 4 * after
-    assert_same(found, go(table))
-    again = go(table, out)
-    assert_same(again, found)
-
-
 @pytest.mark.large
 def test_a_smaller_error_goes_on_from_the_curves_of_a_larger_one(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
@@ -368,7 +313,7 @@ def test_a_smaller_error_goes_on_from_the_curves_of_a_larger_one(
     monkeypatch.setattr(tasks, "_run", counting)
     found = go(asking(0.04), out)
     assert sorted(done) == list(range(first, int(found.realization_count)))
-    assert_same(found.assign_attrs(scene=""), go(asking(0.04)).assign_attrs(scene=""))
+    assert_same(found, go(asking(0.04)), but=("history", "checksum", "scene"))
     done.clear()
     plain = scene(asperities=FEW, path=PATH, batch={"realizations": 10})
     with pytest.raises(rm.StoreError, match=f"holds {int(found.realization_count)} realisations, which this scene"):
@@ -399,22 +344,15 @@ def test_a_larger_error_drops_no_realisations_unasked(keep: str, tmp_path: Path)
 def test_a_cell_with_a_failure_is_left_as_it_is(
     fails: Sequence[int], keep: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    simulate_realization = tasks.simulate_realization
-
-    def failing(cell: Any, route: Any, realization: int, *others: Any) -> Any:
-        if cell.asperities.expected_count == 30 and realization in fails:
-            raise rm.OutOfRange("it must fail")
-        return simulate_realization(cell, route, realization, *others)
-
-    monkeypatch.setattr(tasks, "simulate_realization", failing)
+    let_fail(monkeypatch, lambda cell, realization: cell.asperities.expected_count == 30 and realization in fails)
     out = tmp_path / "out.nc"
     found = go(asking(0.05, sweep={"asperities.count": [30, 300]}, output=kept(keep)), out)
     assert found.realization_count[0] == FIRST
     assert (found.status[0] == 1).sum() == (len(fails) if keep == "curves" else 1)
     assert np.isnan(found.accuracy_reached[0])
     assert float(found.accuracy_reached[1]) <= 0.05
-    for arguments in (["info", str(out)], ["info", "--cells", str(out)], ["plot", str(out), "-o", f"{out}.png"]):
-        assert CliRunner().invoke(main, arguments).exit_code == 0
+    for arguments in (["info", out], ["info", "--cells", out], ["plot", out, "-o", f"{out}.png"]):
+        said(*arguments)
 
 
 @pytest.mark.large
@@ -427,13 +365,10 @@ def test_results_with_missing_realisations_can_be_looked_at(keep: str, tmp_path:
     assert (found.pull_off_count <= found.realization_count).all()
     np.testing.assert_array_equal(mean < 0.0, found.pull_off_count > 0)
     np.testing.assert_array_equal(np.isnan(mean), found.pull_off_count == 0)
-    for arguments in (["info", str(out)], ["info", "--cells", str(out)], ["plot", str(out), "-o", f"{out}.png"]):
-        done = CliRunner().invoke(main, arguments)
-        assert done.exit_code == 0, done.output
-        assert "nan" not in done.output
-        if arguments[0] == "info":
-            assert "asked 0.05 of the largest mean force" in done.output or "sampled" in done.output
-    table = CliRunner().invoke(main, ["info", "--cells", str(out)]).output.splitlines()
+    whole, cells, drawn = said("info", out), said("info", "--cells", out), said("plot", out, "-o", f"{out}.png")
+    assert "nan" not in whole + cells + drawn
+    assert all("asked 0.05 of the largest mean force" in told or "sampled" in told for told in (whole, cells))
+    table = cells.splitlines()
     for line, count, reached in zip(table[-2:], found.realization_count, found.accuracy_reached, strict=True):
         assert f" {int(count)} " in line
         assert f"{float(reached):.2g}" in line

@@ -9,12 +9,12 @@ import numpy as np
 import pytest
 import scipy.stats
 import xarray as xr
-from click.testing import CliRunner
+from batches import assert_same, write_scene
+from command import said
 from forms import large
 
 import roughmdr as rm
 from roughmdr.batch.choose import plan_scene
-from roughmdr.cli import main
 from roughmdr.runner.backend import Backend
 from roughmdr.runner.run import execute
 from roughmdr.scene import read
@@ -32,7 +32,7 @@ ROUGH: dict[str, Any] = {
         "radius": "20 um",
     },
 }
-AREA = {"contact_area": "4 %", "at_pressure": "10 MPa"}
+AREA = {"contact_area": "6 %", "at_pressure": "10 MPa"}
 """Pairs have it within that, in many realisations: a result serves several tests."""
 MAP = {
     "source": "spectrum",
@@ -56,7 +56,7 @@ def go(table: dict[str, Any], **options: Any) -> xr.Dataset:
 
 
 @cache
-def within_4_percent() -> xr.Dataset:
+def within_6_percent() -> xr.Dataset:
     return go(asking(AREA))
 
 
@@ -75,7 +75,7 @@ def method_of(found: xr.Dataset) -> str:
     ],
 )
 def test_the_answer_is_that_of_the_chosen_method_run_by_itself(of: dict[str, Any], method: str) -> None:
-    found = within_4_percent() if of is AREA else go(asking(of))
+    found = within_6_percent() if of is AREA else go(asking(of))
     assert method_of(found) == method
     (quantity, _), (place, at) = of.items()
     given = place.removeprefix("at_")
@@ -96,19 +96,19 @@ def test_the_answer_is_that_of_the_chosen_method_run_by_itself(of: dict[str, Any
 
 
 def test_the_whole_error_is_that_of_the_model_and_twice_the_standard_error() -> None:
-    found = within_4_percent()
+    found = within_6_percent()
     area = found.contact_area.isel(step=-1)
     standard = float(area.std("realization", ddof=1) / area.mean()) / np.sqrt(area.size)
     by_model = (found.contact_area_model_error / found.contact_area).isel(step=-1)
     reached = float(found.accuracy_reached) - 2.0 * standard
     assert by_model.min() <= reached <= by_model.max() * 1.2  # the largest parts of the first four together
-    assert found.accuracy_reached <= 0.04
+    assert found.accuracy_reached <= 0.06
     assert "reached: " in found.attrs["accuracy"]
 
 
-def test_a_smaller_error_takes_more_realisations_and_never_fewer() -> None:
-    counts = [go(asking({**AREA, "contact_area": error})).sizes["realization"] for error in ("9 %", "6 %")]
-    assert counts[0] < counts[1] < within_4_percent().sizes["realization"]
+def test_a_smaller_error_takes_more_realisations() -> None:
+    larger = go(asking({**AREA, "contact_area": "9 %"}))
+    assert larger.sizes["realization"] < within_6_percent().sizes["realization"]
 
 
 @pytest.mark.large
@@ -120,8 +120,8 @@ def test_the_physics_in_other_units_is_chosen_alike() -> None:
                        "height": {"distribution": "normal", "std": "0.3 m"}},
     }  # fmt: skip
     asked = {"max_realizations": 500}
-    here = within_4_percent()
-    there = go({**large_scale, "accuracy": {"of": {"contact_area": "4 %", "at_pressure": "10 Pa"}, **asked}})
+    here = within_6_percent()
+    there = go({**large_scale, "accuracy": {"of": {"contact_area": "6 %", "at_pressure": "10 Pa"}, **asked}})
     assert method_of(here) == method_of(there)
     assert here.sizes == there.sizes
     np.testing.assert_allclose(there.accuracy_reached, here.accuracy_reached, rtol=1e-6)
@@ -130,13 +130,12 @@ def test_the_physics_in_other_units_is_chosen_alike() -> None:
 
 @pytest.mark.large
 def test_any_workers_and_an_interrupted_run_give_the_same_bits(tmp_path: Path) -> None:
-    table = asking({**AREA, "contact_area": "6 %"})
+    table = asking(AREA)
     one, three = (
         execute(plan_scene(read(table)), None, Backend(workers=workers, runs_per_task=2)).to_xarray()
         for workers in (1, 3)
     )
-    dropped = [each.drop_vars("run_time").assign_attrs(history="", checksum="") for each in (one, three)]
-    xr.testing.assert_identical(*dropped)
+    assert_same(three, one)
     again = go(table, out=tmp_path / "a.nc")
     np.testing.assert_array_equal(again.contact_area, one.contact_area)
     assert go(table, out=tmp_path / "a.nc").attrs["history"] == again.attrs["history"]  # it is finished
@@ -144,16 +143,14 @@ def test_any_workers_and_an_interrupted_run_give_the_same_bits(tmp_path: Path) -
 
 @pytest.mark.large
 def test_statistics_and_curves_stop_alike() -> None:
-    of = {"contact_area": "6 %", "at_pressure": "10 MPa"}
-    curves, statistics = go(asking(of)), go(asking(of, output={"keep": "statistics"}))
+    curves, statistics = within_6_percent(), go(asking(AREA, output={"keep": "statistics"}))
     assert statistics.realization_count == curves.realization_count
     np.testing.assert_array_equal(statistics.accuracy_reached, curves.accuracy_reached)
 
 
 @pytest.mark.large
 def test_cells_of_a_sweep_share_a_method_that_suits_all() -> None:
-    of = {"contact_area": "6 %", "at_pressure": "10 MPa"}
-    found = go(asking(of, sweep={"asperities.height.std": ["0.1 um", "1 um"]}))
+    found = go(asking(AREA, sweep={"asperities.height.std": ["0.1 um", "1 um"]}))
     assert (found.accuracy_reached <= 0.06).all()
     assert found.realization_count[0] < found.realization_count[1]
 
@@ -250,10 +247,7 @@ def test_more_asperities_than_the_finest_grid_resolves_are_no_case_for_it() -> N
 
 
 def test_a_plan_tells_the_methods_before_anything_is_run(tmp_path: Path) -> None:
-    import tomli_w
-
-    file = tmp_path / "scene.toml"
-    file.write_text(tomli_w.dumps(asking({"contact_area": "4 %", "at_pressure": "10 MPa"})))
-    text = CliRunner().invoke(main, ["plan", str(file)]).stdout
-    assert "contact area at a pressure of 10 MPa within 4 %: pairs, the cheapest" in text
+    write_scene(tmp_path, asking(AREA))
+    text = said("plan", "scene.toml", cwd=tmp_path)
+    assert "contact area at a pressure of 10 MPa within 6 %: pairs, the cheapest" in text
     assert "independent asperities: within about" in text

@@ -9,18 +9,8 @@ import xarray as xr
 from scenes import CONDUCTION, scene
 
 import roughmdr as rm
-from roughmdr.batch.plan import make_plan
-from roughmdr.batch.rounds import Rounds
-from roughmdr.batch.tasks import split_into_tasks
 from roughmdr.model_error.parts import PARTS
-from roughmdr.runner.backend import Backend
-from roughmdr.runner.run import execute
-from roughmdr.scene import read
 from roughmdr.variables import CONDUCTANCES, CURVE_VARIABLES, SAMPLE
-
-
-def assert_same_bits(one: xr.Dataset, other: xr.Dataset) -> None:
-    assert one.drop_vars("run_time").identical(other.drop_vars("run_time").assign_attrs(history=one.attrs["history"]))
 
 
 @pytest.fixture(scope="module")
@@ -28,39 +18,10 @@ def base() -> xr.Dataset:
     return rm.run(scene(), workers=1)
 
 
-@pytest.mark.parametrize("workers", [1, 2, 3])
-@pytest.mark.parametrize("runs_per_task", [1, 7, 16])
-def test_bits_do_not_depend_on_workers_or_tasks(base: xr.Dataset, workers: int, runs_per_task: int) -> None:
-    plan = make_plan(read(scene()))
-    tasks = split_into_tasks(plan, Rounds(plan).begin(), plan.scene.output.variables, workers, runs_per_task)
-    assert [n for task in tasks for runs in task.ranges for n in range(runs.first, runs.last)] == list(range(16))
-    assert len(tasks) == -(-16 // runs_per_task)
-    assert_same_bits(base, execute(plan, None, Backend(workers=workers, runs_per_task=runs_per_task)).to_xarray())
-
-
-def test_a_second_run_has_the_same_bits(base: xr.Dataset) -> None:
-    assert_same_bits(base, rm.run(scene()))
-
-
 def test_more_realisations_begin_with_the_same_ones(base: xr.Dataset) -> None:
     more = rm.run(scene(batch={"realizations": 18}))
     np.testing.assert_array_equal(more.force[:16], base.force)
     assert len(np.unique(more.force.isel(step=39))) == 18
-
-
-def test_a_realisation_equals_the_ensemble_pressed_alone(base: xr.Dataset) -> None:
-    asked = read(scene())
-    data = rm.generate(asked.asperities, seed=7, realization=4)
-    alone = rm.load_separation(
-        data,
-        separation=asked.path.values(1e-6),
-        effective_modulus=asked.effective_modulus,
-        work=asked.work,
-        unload=True,
-    )
-    for name in ("force", "contact_area", "contact_count", "stiffness"):
-        np.testing.assert_array_equal(base[name][4], alone[name])
-    assert float(base.numerical_error[4]) == float(alone.numerical_error)
 
 
 def test_the_contract_of_the_result(base: xr.Dataset) -> None:

@@ -149,17 +149,6 @@ def test_of_asperities_that_are_not_drawn_the_start_is_exact(tmp_path: Path, adh
 
 
 @pytest.mark.large
-def test_more_realisations_reuse_those_that_are_there(tmp_path: Path) -> None:
-    few, many = (clear({"contact_fraction": 0.02}, batch={"realizations": n}) for n in (3, 9))
-    before = rm.run(few, tmp_path / "out.nc")
-    after = rm.run(many, tmp_path / "out.nc")
-    xr.testing.assert_identical(before.run_time.drop_vars("remark", errors="ignore"), after.run_time[:3])
-    np.testing.assert_array_equal(before.separation, after.separation)
-    other = rm.run({**few, "seed": 8})
-    np.testing.assert_array_equal(before.separation, other.separation)
-
-
-@pytest.mark.large
 @pytest.mark.parametrize("adhesion", [None, JKR, large(DUGDALE)], ids=str)
 @pytest.mark.parametrize(
     "target", [{"contact_fraction": 0.02}, large({"contact_fraction": 1e-4}), {"pressure": "2 kPa"}]
@@ -236,21 +225,6 @@ def test_of_a_file_loading_jumps_over_the_target(tmp_path: Path) -> None:
     bare.to_netcdf(tmp_path / "bare.nc")
     with pytest.raises(SceneError, match=r"path\.separation\.stop\.contact_fraction = 0\.01: needs a nominal area"):
         rm.run({**table, "asperities": {"source": "file", "file": str(tmp_path / "bare.nc")}})
-
-
-@pytest.mark.large
-def test_sweeps(tmp_path: Path) -> None:
-    table = clear({"contact_fraction": 0.02}, batch={"realizations": 2})
-    fractions = rm.run({**table, "sweep": {"path.separation.stop.contact_fraction": [0.01, 0.02]}})
-    assert fractions.separation.dims == ("path_separation_stop_contact_fraction", "step")
-    whole = rm.run(table)
-    np.testing.assert_array_equal(fractions.separation[1], whole.separation)
-    works = rm.run({**table, "sweep": {"adhesion.work": [0.0, 0.05]}}, tmp_path / "out.nc")
-    assert works.separation.dims == ("adhesion_work", "step")
-    np.testing.assert_array_equal(works.separation[1], whole.separation)
-    assert (ends(works).contact_count == 0.0).all()
-    starts = rm.run({**table, "sweep": {"path.separation.start": ["5 sigma", "6 sigma"]}})
-    np.testing.assert_allclose(starts.separation[:, 0], [5e-6, 6e-6], rtol=1e-15)
 
 
 @pytest.mark.parametrize(

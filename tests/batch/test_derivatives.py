@@ -8,13 +8,12 @@ import numpy as np
 import pytest
 import scipy.integrate
 import xarray as xr
-from click.testing import CliRunner
+from batches import write_scene
+from command import said
 from forms import large
 from numpy.typing import NDArray
 
 import roughmdr as rm
-from roughmdr.cli import main
-from roughmdr.scene import read
 
 Floats = NDArray[np.float64]
 RADIUS, SIGMA = 50.0, 1.0  # radius and standard deviation of heights of the rough scene, over its scale
@@ -158,10 +157,10 @@ def test_beside_a_contact_that_is_lost_the_error_tells() -> None:
 
 
 def test_it_is_stored_read_and_asked_for_on_the_command_line(tmp_path: Path) -> None:
-    file, out = tmp_path / "scene.toml", tmp_path / "out.nc"
-    file.write_text(read(tip(1e-6, 1e6, np.array([-1e-7]))).toml)
-    asked = ["run", str(file), "-o", str(out), "--derivatives", "asperities.radius, material.effective_modulus"]
-    assert CliRunner().invoke(main, asked).exit_code == 0
+    out = tmp_path / "out.nc"
+    write_scene(tmp_path, tip(1e-6, 1e6, np.array([-1e-7])))
+    asked = "asperities.radius, material.effective_modulus"
+    said("run", "scene.toml", "-o", "out.nc", "--derivatives", asked, cwd=tmp_path)
     stored = xr.open_dataset(out)
     assert stored.parameter.to_numpy().tolist() == ["asperities.radius", "material.effective_modulus"]
     assert "by asperities.radius, material.effective_modulus" in rm.info(out)

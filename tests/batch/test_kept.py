@@ -12,24 +12,21 @@ from typing import Any, get_type_hints
 
 import psutil
 import pytest
-import tomli_w
 from batches import Batch, interrupted, kept, lines, running, slow_scene, until, write_scene
-from click.testing import CliRunner
+from command import roughmdr, said
 from scenes import ASPERITIES, scene
 
 import roughmdr as rm
 from roughmdr.batch.resume import kept as module
-from roughmdr.cli import main
 from roughmdr.report.documents import PartCellTable, PartsTable
 
 SWEPT = slow_scene(48, count=2000, sweep={"adhesion.work": ["10 mJ/m^2", "50 mJ/m^2"]})
 
 
 def told(path: Path, *options: str) -> str:
-    done = CliRunner().invoke(main, ["info", str(path), *options])
-    assert done.exit_code == 0, (done.output, done.exception)
-    assert done.stderr == ""
-    return done.output
+    done = roughmdr("info", path, *options)
+    assert (done.returncode, done.stderr) == (0, "")
+    return done.stdout
 
 
 def table(path: Path) -> dict[str, Any]:
@@ -69,9 +66,9 @@ def test_a_batch_at_work_stopped_killed_and_resumed(tmp_path: Path) -> None:
         assert at_work["cells"][0]["done"] == at_work["cells"][0]["total"] == 48
         assert f"at work      process {batch.pid} since 20" in told(parts)
         assert state(parts) == before  # nothing was touched
-        done_early = CliRunner().invoke(main, ["info", str(folder / "out.nc")])
-        assert done_early.exit_code == 2
-        assert f"is not written yet; what is finished is told by: roughmdr info {parts}" in done_early.output
+        early = roughmdr("info", folder / "out.nc")
+        assert early.returncode == 2
+        assert f"is not written yet; what is finished is told by: roughmdr info {parts}" in early.stderr
         batch.kill()
     killed = table(parts)
     assert killed["holder"] is None
@@ -94,12 +91,12 @@ def test_while_it_runs_the_run_is_not_disturbed(tmp_path: Path) -> None:
         batch.wait_for_lines(1)
         counts = []
         while batch.process.poll() is None:
-            done = CliRunner().invoke(main, ["info", str(parts), "--json"])
+            done = roughmdr("info", parts, "--json")
             document = json.loads(done.stdout)
-            if done.exit_code == 0:
+            if done.returncode == 0:
                 counts.append(document["parts"]["done"])
             else:  # it has just ended
-                assert done.exit_code == 2
+                assert done.returncode == 2
                 said = document["faults"][0]["message"]
                 assert any(words in said for words in ("no such file", "holds no runs", "is not readable")), said
         assert batch.succeed() == 96
@@ -191,16 +188,15 @@ def test_who_is_at_work(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, listed:
         assert table(parts)["holder"] is None
         shutil.rmtree(parts)
         parts.mkdir()
-        done = CliRunner().invoke(main, ["info", str(parts), "--json"])
-        assert done.exit_code == 2
+        done = roughmdr("info", parts, "--json")
+        assert done.returncode == 2
         assert "holds no runs" in json.loads(done.stdout)["faults"][0]["message"]
         (parts / "lock").touch()
         assert "kept         nothing: a run has just begun here, or has just ended" in told(parts)
 
 
 def test_a_result_says_nothing_of_it(tmp_path: Path) -> None:
-    (tmp_path / "s.toml").write_text(tomli_w.dumps(scene(batch=None)))
-    rm.run(tmp_path / "s.toml", tmp_path / "out.nc")
+    rm.run(scene(batch=None), tmp_path / "out.nc")
     assert json.loads(told(tmp_path / "out.nc", "--json"))["parts"] is None
     assert lines(tmp_path) == []
 
@@ -212,26 +208,26 @@ def test_a_batch_is_followed_to_its_result(tmp_path: Path, monkeypatch: pytest.M
     write_scene(folder, SWEPT)
     with running(Batch(folder, "--workers", "1", "--part", "1/2")) as batch:
         until((folder / "out.nc.1-of-2.parts" / "000002.npz").exists)
-        done = CliRunner().invoke(main, ["info", "--follow", str(folder / "out.nc.1-of-2.parts")])
+        followed = said("info", "--follow", folder / "out.nc.1-of-2.parts")
         batch.succeed()
-    assert done.exit_code == 0, done.output
-    counts = [int(count) for count in re.findall(r"^A small scene: (\d+) of 48 runs", done.output, re.MULTILINE)]
+    counts = [int(count) for count in re.findall(r"^A small scene: (\d+) of 48 runs", followed, re.MULTILINE)]
     assert counts == sorted(counts)
     assert len(set(counts)) > 1
-    assert "kept         A small scene: 48 of 48 runs" in done.output
+    assert "kept         A small scene: 48 of 48 runs" in followed
     with running(Batch(folder, "--workers", "1")) as batch:
         batch.wait_for_lines(2)
-        done = CliRunner().invoke(main, ["info", "--follow", str(folder / "out.nc")])
+        followed = said("info", "--follow", folder / "out.nc")
         batch.succeed()
-    assert done.exit_code == 0, done.output
-    assert " of 96 runs; about " in done.output
-    assert "pull-off" in done.output  # the result is told at the end
-    assert CliRunner().invoke(main, ["info", "--follow", "--json", str(folder / "out.nc")]).exit_code == 2
+    assert " of 96 runs; about " in followed
+    laws = [int(each) for each in re.findall(r"^law so far   mean force over (\d+) runs", followed, re.MULTILINE)]
+    assert laws
+    assert laws == sorted(laws)
+    assert "pull-off" in followed  # the result is told at the end
+    assert roughmdr("info", "--follow", "--json", folder / "out.nc").returncode == 2
 
 
 def test_where_no_run_is_at_work_there_is_nothing_to_follow(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     interrupted(SWEPT, tmp_path / "out.nc", 5, monkeypatch)
-    done = CliRunner().invoke(main, ["info", "--follow", str(tmp_path / "out.nc")])
-    assert done.exit_code == 0, done.output
-    assert "A small scene: 10 of 96 runs\n" in done.output
-    assert "at work      no run" in done.output
+    followed = said("info", "--follow", tmp_path / "out.nc")
+    assert "A small scene: 10 of 96 runs\n" in followed
+    assert "at work      no run" in followed

@@ -7,13 +7,12 @@ from typing import Any
 
 import numpy as np
 import pytest
-import tomli_w
 import xarray as xr
-from click.testing import CliRunner
+from batches import write_scene
+from command import said
 from scenes import ASPERITIES, scene
 
 import roughmdr as rm
-from roughmdr.cli import main
 from roughmdr.scene import read
 from roughmdr.scene.lateral import LateralRange, displacements
 
@@ -109,15 +108,6 @@ def test_draws_tend_to_the_expected_law() -> None:
         assert float(abs(off[8])) < 4.0
 
 
-def test_statistics_are_those_of_the_curves_for_any_workers() -> None:
-    curves = rm.run(lateral(), workers=1)
-    again = rm.run(lateral(), workers=2)
-    kept = rm.run(lateral(output={"variables": VARIABLES, "keep": "statistics"}))
-    for name in VARIABLES:
-        np.testing.assert_array_equal(curves[name], again[name])
-        np.testing.assert_allclose(kept[f"{name}_mean"], curves[name].mean("realization"), rtol=1e-13, atol=0.0)
-
-
 @pytest.mark.parametrize("units", [1e-3, 1e3])
 def test_other_units_change_nothing_but_the_unit(units: float) -> None:
     def at(length: float) -> xr.Dataset:
@@ -131,17 +121,12 @@ def test_other_units_change_nothing_but_the_unit(units: float) -> None:
         np.testing.assert_allclose(other[name], one[name] * units**power, rtol=1e-8)
 
 
-def test_friction_and_what_is_held_are_swept() -> None:
+def test_a_swept_path_is_one_of_each_cell_and_any_other_is_of_all() -> None:
     swept = rm.run(lateral(sweep={"tangential.friction": [0.1, 0.3], "path.separation": ["0 sigma", "1 sigma"]}))
     assert swept.tangential_force.dims == ("tangential_friction", "path_separation", "realization", "step")
     assert swept["lateral"].dims == ("step",)
-    np.testing.assert_array_equal(swept.tangential_force[1, 1], rm.run(lateral()).tangential_force)
-    assert len(set(swept.cell_key.values.flat)) == 4
     wider = rm.run(lateral(sweep={"path.lateral.amplitude": ["20 nm", "40 nm"]}))
     assert wider["lateral"].dims == ("path_lateral_amplitude", "step")
-    loads = {"force": "1 N", "lateral": CYCLES}
-    loaded = rm.run(lateral(path=loads, sweep={"path.force": ["1 N", "2 N"]}))
-    np.testing.assert_allclose(loaded.force.mean(("realization", "step")), [1.0, 2.0], rtol=1e-9)
 
 
 def test_an_asked_error_is_that_of_the_tangential_force() -> None:
@@ -252,24 +237,18 @@ def test_a_load_that_is_out_of_reach_is_refused() -> None:
 
 @pytest.mark.large
 def test_commands(tmp_path: Path) -> None:
-    file, out = tmp_path / "loop.toml", tmp_path / "loop.nc"
-    file.write_text(tomli_w.dumps(lateral()))
-
-    def told(*arguments: str) -> str:
-        done = CliRunner().invoke(main, list(arguments))
-        assert done.exit_code == 0, done.output
-        return done.output
-
-    plan = told("plan", str(file))
+    file, out = tmp_path / "scene.toml", tmp_path / "loop.nc"
+    write_scene(tmp_path, lateral())
+    plan = said("plan", file)
     assert "displacement from -40 to 40 nm" in plan
     assert "Dundurs' beta is 0.29" in plan
-    assert json.loads(told("plan", str(file), "--json"))["plan"]["control"] == "lateral"
-    told("run", str(file), "-o", str(out), "--quiet")
-    info = told("info", str(out))
+    assert json.loads(said("plan", file, "--json"))["plan"]["control"] == "lateral"
+    said("run", file, "-o", out, "--quiet")
+    info = said("info", out)
     assert "Dundurs' beta is 0.29" in info
     assert "pull-off" not in info
     assert "[interaction] model" not in info
-    assert "tangential_force" in json.loads(told("info", str(out), "--json"))["result"]["variables"]
+    assert "tangential_force" in json.loads(said("info", out, "--json"))["result"]["variables"]
     with xr.open_dataset(out) as stored:
         np.testing.assert_array_equal(stored.tangential_force, rm.run(lateral()).tangential_force)
         assert stored["lateral"].dims == ("step",)
@@ -278,11 +257,6 @@ def test_commands(tmp_path: Path) -> None:
             "tangential force", "tangential stiffness", "friction energy"
         ]  # fmt: skip
         assert axes[0].get_xlabel() == "lateral displacement [nm]"
-    other = tmp_path / "resumed.nc"
-    told("run", str(file), "-o", str(out), "--quiet", "--set", "batch.realizations=4")
-    told("run", str(file), "-o", str(other), "--quiet", "--set", "batch.realizations=4")
-    with xr.open_dataset(out) as resumed, xr.open_dataset(other) as at_once:
-        np.testing.assert_array_equal(resumed.friction_energy, at_once.friction_energy)
 
 
 def test_papers_of_slip_are_cited() -> None:

@@ -9,13 +9,13 @@ import numpy as np
 import pytest
 import tomli_w
 import xarray as xr
-from click.testing import CliRunner
+from batches import write_scene
+from command import said
 from forms import large
 from oracles.boundary_elements import HeightMap
 from scenes import scene
 
 import roughmdr as rm
-from roughmdr.cli import main
 from roughmdr.ensemble.spectral.section import SpectrumAsperities
 
 SURFACE = {
@@ -208,22 +208,6 @@ def test_the_reference_does_not_change_the_law(result: xr.Dataset) -> None:
     assert "boundary elements: the scene has no [reference]" in without.attrs["left_out"]
 
 
-@pytest.mark.large
-def test_the_same_bits_for_any_workers(result: xr.Dataset) -> None:
-    again = rm.run(of_spectrum(), workers=1)
-    for name in ("reference_force", "reference_contact_area", "reference_stiffness", "reference_area_error"):
-        np.testing.assert_array_equal(again[name], result[name])
-
-
-@pytest.mark.large
-def test_a_result_without_its_reference_is_extended(tmp_path: Path) -> None:
-    out = tmp_path / "out.nc"
-    rm.run(of_spectrum(), out)
-    again = rm.run(of_spectrum(batch={"realizations": 3}), out)
-    assert again.sizes["realization"] == 3
-    assert np.isfinite(again["reference_force"]).all()
-
-
 @pytest.mark.parametrize(
     ("changes", "message"),
     [
@@ -270,26 +254,20 @@ def test_commands_tell_and_draw_it(tmp_path: Path) -> None:
     file, out, picture = tmp_path / "scene.toml", tmp_path / "out.nc", tmp_path / "out.png"
     file.write_text(tomli_w.dumps(of_spectrum()))
 
-    def command(*arguments: str) -> str:
-        done = CliRunner().invoke(main, list(arguments), catch_exceptions=False)
-        assert done.exit_code == 0, done.output
-        return done.output
-
-    planned = command("plan", str(file))
+    planned = said("plan", file)
     assert "boundary elements beside each realisation, their grid right to 0.02;" in planned
     assert "few and small contacts need finer grids: in all up to about" in planned
-    ran = command("run", str(file), "-o", str(out), "--quiet") + command("info", str(out))
+    ran = said("run", file, "-o", out, "--quiet") + said("info", out)
     assert "reference    boundary elements on up to" in ran
     assert re.search(r"right to about \S+ % \(area at given force: \S+ to \S+ %\): the mean force of the law", ran)
     assert "advice       believe boundary elements, which press the map itself; the asperities are right" in ran
     assert re.search(r"pressure     \S+ kPa, \S+ kPa by boundary elements, on average in the contacts", ran)
-    assert "reference    drawn" in command("plot", str(out), "-o", str(picture), "--with-reference")
+    assert "reference    drawn" in said("plot", out, "-o", picture, "--with-reference")
     assert picture.stat().st_size > 10_000
     plain = tmp_path / "plain.nc"
     file.write_text(tomli_w.dumps(of_spectrum(reference=None)))
-    told = command("run", str(file), "-o", str(plain))
-    assert "--set reference.model=boundary_elements" in told
-    assert "reference    not drawn" in command("plot", str(plain), "-o", str(picture), "--with-reference")
+    assert "--set reference.model=boundary_elements" in said("run", file, "-o", plain)
+    assert "reference    not drawn" in said("plot", plain, "-o", picture, "--with-reference")
 
 
 @pytest.mark.few(1)
@@ -311,10 +289,8 @@ def test_commands_tell_and_draw_it(tmp_path: Path) -> None:
     ],
 )
 def test_advice_says_which_model_to_believe(changes: dict[str, Any], advised: str, tmp_path: Path) -> None:
-    file = tmp_path / "scene.toml"
-    file.write_text(tomli_w.dumps(of_spectrum(**changes)))
-    done = CliRunner().invoke(main, ["plan", str(file)], catch_exceptions=False)
-    assert advised in done.output
+    write_scene(tmp_path, of_spectrum(**changes))
+    assert advised in said("plan", "scene.toml", cwd=tmp_path)
 
 
 @pytest.mark.large

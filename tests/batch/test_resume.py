@@ -6,10 +6,11 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+import batches
 import numpy as np
 import pytest
 import xarray as xr
-from batches import interrupted
+from batches import interrupted, let_fail
 from hypothesis import HealthCheck, given, settings, strategies as st
 from scenes import ASPERITIES, scene
 
@@ -57,19 +58,14 @@ class Calls:
 
 @pytest.fixture
 def calls(monkeypatch: pytest.MonkeyPatch) -> Calls:
-    counted, run, simulate_realization = Calls(), tasks._run, tasks.simulate_realization
+    counted, run = Calls(), tasks._run
 
     def counting(runs: tasks.RunRange, realization: int, names: Any) -> Any:
         counted.done.append((runs.cell.scene.work, realization))
         return run(runs, realization, names)
 
-    def failing(cell: Any, route: Any, realization: int, *others: Any) -> Any:
-        if counted.fails(cell.work, realization):
-            raise rm.OutOfRange("it must fail")
-        return simulate_realization(cell, route, realization, *others)
-
     monkeypatch.setattr(tasks, "_run", counting)
-    monkeypatch.setattr(tasks, "simulate_realization", failing)
+    let_fail(monkeypatch, lambda cell, realization: counted.fails(cell.work, realization))
     return counted
 
 
@@ -89,11 +85,7 @@ def go(
 
 def assert_same(found: xr.Dataset, fresh: xr.Dataset) -> None:
     """To the last bit, in all but the clock and the words of the scene."""
-    words = ("history", "scene", "title", "checksum")
-    found, fresh = (each.drop_vars("run_time") for each in (found, fresh))
-    for each in (found, fresh):
-        each.attrs = {name: value for name, value in each.attrs.items() if name not in words}
-    xr.testing.assert_identical(found, fresh)
+    batches.assert_same(found, fresh, but=("history", "scene", "title", "checksum"))
 
 
 def every(works: list[float], first: int, last: int) -> list[tuple[float, int]]:
@@ -125,106 +117,80 @@ def test_the_same_again_computes_nothing(name: str, calls: Calls, out: Path) -> 
     np.testing.assert_array_equal(again.run_time, first.run_time)
 
 
-def test_more_realisations_compute_only_those_that_are_missing(calls: Calls, out: Path) -> None:
-    first = go(small(6), out)
-    calls.taken()
-    more = go(small(11), out)
-    assert calls.taken() == every([0.05], 6, 11)
-    np.testing.assert_array_equal(more.run_time[:6], first.run_time)
-    assert_same(more, go(small(11), None))
-    calls.taken()
-    with pytest.raises(rm.StoreError, match="holds 11 realisations, which this scene does not ask for"):
-        go(small(3), out)
-    assert not calls.taken()
-    assert_same(go(small(11), out), more)
+VARIABLES = ["force", "contact_area", "energy"]
+LONGER = swept(["50 mJ/m^2", 0.02, "0.01 J/m^2", 0.04, 0.03])
+ONE = swept(["50 mJ/m^2"])
+EXTENDED: dict[str, tuple[dict[str, Any], dict[str, Any], list[tuple[float, int]]]] = {
+    "more realisations": (small(6), small(11), every([0.05], 6, 11)),
+    "more cells": (swept(WORKS), LONGER, every([0.02, 0.04], 0, 6)),
+    "more variables": (small(output=kept()), small(output=kept(variables=["energy", *kept()["variables"]])),
+                       every([0.05], 0, 6)),
+    "statistics of more realisations": (small(output=kept("statistics")), small(9, output=kept("statistics")),
+                                        every([0.05], 0, 9)),
+    "a sweep of one value": (small(), ONE, []),
+    "zipped": (ONE, small(sweep={"mode": "zip", "adhesion.work": ["50 mJ/m^2"]}), []),
+    "axes in another order": (small(sweep={"adhesion.work": ["50 mJ/m^2"], "asperities.count": [50, 60]}),
+                              small(sweep={"asperities.count": [50, 60], "adhesion.work": ["50 mJ/m^2"]}), []),
+    "another title": (small(), small(title="Another"), []),
+    "variables in another order": (small(), small(output=kept(variables=[*reversed(DEFAULT_VARIABLES)])), []),
+}  # fmt: skip
+"""Scenes that were run, scenes asked for after that, and the runs that are computed then."""
 
 
-@pytest.mark.large
-def test_a_longer_sweep_computes_only_its_new_cells(calls: Calls, out: Path) -> None:
-    go(swept(WORKS), out)
-    calls.taken()
-    longer = swept(["50 mJ/m^2", 0.02, "0.01 J/m^2", 0.04, 0.03])
-    found = go(longer, out)
-    assert calls.taken() == every([0.02, 0.04], 0, 6)
-    assert found.adhesion_work.to_numpy().tolist() == [0.01, 0.02, 0.03, 0.04, 0.05]
-    assert_same(found, go(longer, None))
-    calls.taken()
-    with pytest.raises(rm.StoreError, match="holds 4 cells more, which this scene does not ask for"):
-        go(small(), out)
-    assert not calls.taken()
-    assert_same(go(longer, out), found)
-
-
-@pytest.mark.few(1)
-@pytest.mark.parametrize(
-    ("before", "after"),
-    [
-        (small(), swept(["50 mJ/m^2"])),
-        (swept(["50 mJ/m^2"]), small(sweep={"mode": "zip", "adhesion.work": ["50 mJ/m^2"]})),
-        (
-            small(sweep={"adhesion.work": ["50 mJ/m^2"], "asperities.count": [50, 60]}),
-            small(sweep={"asperities.count": [50, 60], "adhesion.work": ["50 mJ/m^2"]}),
-        ),
-    ],
-)
-def test_the_same_cells_laid_out_otherwise(
-    before: dict[str, Any], after: dict[str, Any], calls: Calls, out: Path
-) -> None:
-    go(before, out)
+@pytest.mark.few(4)
+@pytest.mark.parametrize("name", EXTENDED)
+def test_only_what_is_missing_is_computed(name: str, calls: Calls, out: Path) -> None:
+    before, after, missing = EXTENDED[name]
+    first = go(before, out)
     calls.taken()
     found = go(after, out)
-    assert not calls.taken()
-    fresh = go(after, None)
-    assert found.force.dims == fresh.force.dims
-    assert_same(found, fresh)
+    assert calls.taken() == missing
+    assert_same(found, go(after, None))
+    assert found.attrs["title"] == after["title"]
+    if name == "more realisations":
+        np.testing.assert_array_equal(found.run_time[:6], first.run_time)
 
 
-def test_more_variables_are_computed(calls: Calls, out: Path) -> None:
-    go(small(output=kept(variables=["force", "contact_area"])), out)
-    calls.taken()
-    more = small(output=kept(variables=["energy", "force", "contact_area"]))
-    found = go(more, out)
-    assert calls.taken() == every([0.05], 0, 6)
-    assert_same(found, go(more, None))
+LESS: dict[str, tuple[dict[str, Any], dict[str, Any], str]] = {
+    "realisations": (small(11), small(3), "11 realisations"),
+    "cells": (LONGER, small(), "4 cells more"),
+    "curves": (swept(WORKS[:2]), swept(WORKS[:2], realizations=8, output={"keep": "statistics"}),
+               "the curves of its realisations"),
+} | {
+    f"{', '.join(asked)}, {realizations}, {keep}": (
+        small(output=kept(keep, VARIABLES)), small(realizations, output=kept(keep, asked)), gone
+    )
+    for asked, gone in ((["energy", "force"], "contact_area"), (["pressure"], ", ".join(VARIABLES)))
+    for realizations in (6, 9) for keep in ("curves", "statistics")
+}  # fmt: skip
+"""Scenes that were run, scenes asked for after that, and what their results would lack."""
 
 
-def refused(table: dict[str, Any], out: Path, message: str) -> None:
+@pytest.mark.few(2)
+@pytest.mark.parametrize("name", LESS)
+def test_nothing_is_dropped_unasked(name: str, calls: Calls, out: Path) -> None:
+    before, fewer, gone = LESS[name]
+    go(before, out)
+    refused(fewer, out, f"holds {gone}, which this scene does not ask for", calls)
+    assert_same(go(fewer, out, resume=False), go(fewer, None))
+
+
+def refused(table: dict[str, Any], out: Path, message: str, calls: Calls) -> None:
     """Nothing is computed, nothing replaced."""
     content = out.read_bytes()
-    with pytest.raises(rm.StoreError, match=f"{message}.*--fresh"):
+    calls.taken()
+    with pytest.raises(rm.StoreError, match=rf"{message}(.|\n)*--fresh.*resume=False"):
         go(table, out)
+    assert not calls.taken()
     assert out.read_bytes() == content
     assert not store_folder(out).exists()
 
 
-VARIABLES = ["force", "contact_area", "energy"]
-
-
 @pytest.mark.large
-@pytest.mark.parametrize("keep", ["curves", "statistics"])
-@pytest.mark.parametrize(
-    ("asked", "gone"), [(["energy", "force"], "contact_area"), (["pressure"], ", ".join(VARIABLES))]
-)
-def test_no_variable_is_dropped_unasked(asked: list[str], gone: str, keep: str, calls: Calls, out: Path) -> None:
-    go(small(output=kept(keep, VARIABLES)), out)
-    calls.taken()
-    fewer = small(output=kept(keep, asked))
-    refused(fewer, out, f"holds {gone}, which this scene does not ask for")
-    refused({**fewer, "batch": {"realizations": 9}}, out, f"holds {gone}, which")
-    assert not calls.taken()
-    assert_same(go(fewer, out, resume=False), go(fewer, None))
-
-
-@pytest.mark.large
-def test_no_curves_are_dropped_unasked(calls: Calls, out: Path) -> None:
-    go(swept(WORKS[:2]), out)
-    calls.taken()
-    statistics = swept(WORKS[:2], realizations=8, output={"keep": "statistics"})
-    refused(statistics, out, "holds the curves of its realisations, which this scene does not ask for")
-    assert not calls.taken()
-    assert_same(go(statistics, out, resume=False), go(statistics, None))
-    curves = swept(WORKS[:2], realizations=8)
-    assert_same(go(curves, out), go(curves, None))  # which say all that statistics say
+def test_curves_say_all_that_statistics_say(calls: Calls, out: Path) -> None:
+    go(swept(WORKS[:2], output={"keep": "statistics"}), out)
+    curves = swept(WORKS[:2])
+    assert_same(go(curves, out), go(curves, None))
 
 
 def held_by(result: xr.Dataset) -> set[tuple[str, str, str, int]]:
@@ -287,16 +253,6 @@ def test_no_result_holds_less_than_the_one_before(
         before = after
 
 
-@pytest.mark.parametrize("change", [{"title": "Another"}, {"output": kept(variables=[*reversed(DEFAULT_VARIABLES)])}])
-def test_what_does_not_change_the_numbers_does_not_matter(change: dict[str, Any], calls: Calls, out: Path) -> None:
-    go(small(), out)
-    calls.taken()
-    found = go(small(**change), out)
-    assert not calls.taken()
-    assert_same(found, go(small(**change), None))
-    assert rm.run(small(**change), out).attrs["title"] == change.get("title", "A small scene")
-
-
 CHANGES: dict[str, tuple[dict[str, Any], str]] = {
     "seed": ({"seed": 8}, r"seed was 7, is 8"),
     "work": ({"adhesion": {"model": "jkr", "work": 0.06}}, r"adhesion\.work was '50 mJ/m\^2', is 0\.06"),
@@ -312,15 +268,8 @@ CHANGES: dict[str, tuple[dict[str, Any], str]] = {
 def test_another_scene_is_refused(name: str, keep: str, calls: Calls, out: Path) -> None:
     change, message = CHANGES[name]
     go(small(output=kept(keep)), out)
-    content = out.read_bytes()
-    calls.taken()
     other = small(**({"output": kept(keep)} | change))
-    with pytest.raises(rm.StoreError, match=message) as refused:
-        go(other, out)
-    assert "resume=False" in str(refused.value)
-    assert not calls.taken()
-    assert out.read_bytes() == content
-    assert not store_folder(out).exists()
+    refused(other, out, message, calls)
     assert_same(go(other, out, resume=False), go(other, None))
 
 
@@ -366,6 +315,20 @@ def test_a_netcdf_file_of_another_kind_is_left_alone(out: Path) -> None:
     assert xr.load_dataset(out).force.to_numpy().tolist() == [1.0, 2.0]
 
 
+CHANGED: dict[str, Callable[[xr.Dataset], xr.Dataset]] = {
+    "separation": lambda data: data.assign_coords(separation=2.0 * data.separation),
+    "scene": lambda data: data.assign_attrs(scene=data.attrs["scene"].replace("seed = 7", "seed = 9")),
+    "key": lambda data: data.assign_coords(cell_key=data.cell_key.copy(data=data.cell_key.to_numpy()[::-1])),
+    "numbers": lambda data: data.assign(
+        {
+            name: 2.0 * data[name]
+            for name in ("force", *(f"force_{each}" for each in ("mean", "sem", "min", "max")))
+            if name in data
+        }
+    ),
+}
+
+
 @pytest.mark.large
 @pytest.mark.parametrize("keep", ["curves", "statistics"])
 def test_numbers_that_were_changed_are_refused(keep: str, calls: Calls, out: Path) -> None:
@@ -377,11 +340,11 @@ def test_numbers_that_were_changed_are_refused(keep: str, calls: Calls, out: Pat
     data.to_netcdf(out)  # as it was, through other hands
     go(table, out)
     assert not calls.taken()
-    names = ["force"] if keep == "curves" else [f"force_{statistic}" for statistic in ("mean", "sem", "min", "max")]
-    out.unlink()
-    data.assign({name: data[name] * 2.0 for name in names}).to_netcdf(out)
-    with pytest.raises(rm.StoreError, match="numbers are not those that were written"):
-        go(table, out)
+    for change in CHANGED.values():
+        out.unlink()
+        change(data).to_netcdf(out)
+        with pytest.raises(rm.StoreError, match="numbers are not those that were written"):
+            go(table, out)
     out.unlink()
     data.assign_attrs(scene="no = = toml").to_netcdf(out)
     with pytest.raises(rm.StoreError, match="its scene cannot be read"):
@@ -392,16 +355,6 @@ def test_numbers_that_were_changed_are_refused(keep: str, calls: Calls, out: Pat
     with pytest.raises(rm.StoreError, match="has no checksum: its numbers may not be"):
         go(table, out)
     assert not calls.taken()
-
-
-@pytest.mark.large
-def test_statistics_with_more_realisations_are_computed_anew(calls: Calls, out: Path) -> None:
-    go(small(6, output=kept("statistics")), out)
-    calls.taken()
-    more = small(9, output=kept("statistics"))
-    found = go(more, out)
-    assert calls.taken() == every([0.05], 0, 9)
-    assert_same(found, go(more, None))
 
 
 @pytest.mark.few(1)
@@ -451,50 +404,33 @@ def test_other_versions_are_not_used(
     assert not store_folder(out).exists()
 
 
-@pytest.mark.few(1)
-@pytest.mark.parametrize("keep", ["curves", "statistics"])
-@pytest.mark.parametrize("after", [1, 4, 8])
+RUNS = every([0.01, 0.03, 0.05], 0, 6)
+OTHERWISE = [0.03, 0.02, "10 mJ/m^2"]
+INTERRUPTED: list[tuple[dict[str, Any], int, dict[str, Any], list[tuple[float, int]]]] = [
+    *((table, after, table, RUNS) for after in (1, 4, 8)
+      for table in (swept(WORKS, output=kept(keep)) for keep in ("curves", "statistics"))),
+    *((swept(WORKS, output=kept(keep)), 5, swept(OTHERWISE, realizations=8, output=kept(keep)),
+       every([0.01, 0.02, 0.03], 0, 8)) for keep in ("curves", "statistics")),
+    *((swept(WORKS[:2], realizations=11), 7, swept(WORKS[:2], realizations=runs, output={"keep": "statistics"}),
+       every([0.01, 0.03], 0, runs)) for runs in (11, 19)),
+]  # fmt: skip
+"""Scenes that were begun, finished tasks, scenes asked for after that, and the runs of which these consist."""
+
+
+@pytest.mark.few(3)
+@pytest.mark.parametrize(("begun", "after", "asked", "runs"), INTERRUPTED)
 def test_what_an_interrupted_run_finished_is_used(
-    after: int, keep: str, calls: Calls, out: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    table = swept(WORKS, output=kept(keep))
-    interrupted(table, out, after, monkeypatch)
+    begun: dict[str, Any], after: int, asked: dict[str, Any], runs: list[tuple[float, int]],
+    calls: Calls, out: Path, monkeypatch: pytest.MonkeyPatch,
+) -> None:  # fmt: skip
+    """Also by a sweep in another order, by more realisations, and curves by statistics."""
+    interrupted(begun, out, after, monkeypatch, runs_per_task=3 if begun is not asked else 2)
     done = calls.taken()
-    assert len(done) == 2 * after
-    found = go(table, out, runs_per_task=4)
-    assert sorted(done + calls.taken()) == every([0.01, 0.03, 0.05], 0, 6)
-    assert not store_folder(out).exists()
-    assert_same(found, go(table, None))
-
-
-@pytest.mark.large
-@pytest.mark.parametrize("keep", ["curves", "statistics"])
-def test_an_interrupted_run_asked_for_otherwise(
-    keep: str, calls: Calls, out: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """A longer sweep, in another order, of more realisations."""
-    interrupted(swept(WORKS, output=kept(keep)), out, 5, monkeypatch)
-    done = calls.taken()
-    assert len(done) == 10
-    longer = swept([0.03, 0.02, "10 mJ/m^2"], realizations=8, output=kept(keep))
-    found = go(longer, out)
-    anew = calls.taken()
-    assert not {*anew} & {*done}
-    assert {*anew} == {*every([0.01, 0.02, 0.03], 0, 8)} - {*done}
-    assert_same(found, go(longer, None))
-
-
-@pytest.mark.few(1)
-@pytest.mark.parametrize("realizations", [11, 19])
-def test_curves_of_an_interrupted_run_become_statistics(
-    realizations: int, calls: Calls, out: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    interrupted(swept(WORKS[:2], realizations=11), out, 7, monkeypatch, runs_per_task=3)
-    done = calls.taken()
-    table = swept(WORKS[:2], realizations=realizations, output={"keep": "statistics"})
-    found = go(table, out)
-    assert sorted(done + calls.taken()) == every([0.01, 0.03], 0, realizations)
-    assert_same(found, go(table, None, runs_per_task=5))
+    assert len(done) >= 2 * after
+    found = go(asked, out, runs_per_task=4)
+    assert calls.taken() == sorted({*runs} - {*done})
+    assert store_folder(out).exists() == bool({*done} - {*runs})
+    assert_same(found, go(asked, None))
 
 
 def test_variables_of_an_interrupted_run_that_are_not_asked_for_stay(
@@ -520,6 +456,11 @@ def test_interrupted_twice_and_shorter_at_last(calls: Calls, out: Path, monkeypa
     found = go(swept([work]), out)
     assert {*calls.taken()} == {*every([work], 0, 6)} - {*done}
     assert_same(found, go(swept([work]), None))
+    calls.taken()
+    assert_same(go(swept(WORKS), out), go(swept(WORKS), None))  # those of other cells were kept
+    anew = calls.taken()
+    assert all(anew.count(run) == 2 - (run in done or run[0] == work) for run in RUNS)
+    assert not store_folder(out).exists()
 
 
 def test_an_interrupted_run_of_another_scene_is_refused(out: Path, monkeypatch: pytest.MonkeyPatch) -> None:

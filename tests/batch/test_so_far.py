@@ -2,21 +2,19 @@
 
 import json
 import re
-import sys
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
-from batches import Batch, interrupted, lines, running, slow_scene, write_scene
-from click.testing import CliRunner
+from batches import Batch, interrupted, running, slow_scene, write_scene
+from command import said
 from scenes import ASPERITIES, scene
 
 import roughmdr as rm
 from roughmdr.batch.resume import so_far as module
 from roughmdr.batch.resume.kept import progress_of, read_kept
 from roughmdr.batch.resume.so_far import LawSoFar, SoFar
-from roughmdr.cli import main
 
 FEW = {**ASPERITIES, "count": 50}
 
@@ -78,10 +76,10 @@ def test_of_a_sweep_the_first_cell_is_told_and_each_of_its_files_is_read_once(
     assert second.moments.size == 4
     check(second, table, adhesion_work=0)
     assert read == sorted(set(read)) == ["000001.npz", "000002.npz"]  # and the third is of another cell
-    told = CliRunner().invoke(main, ["info", str(folder)]).output
+    told = said("info", folder)
     assert re.search(r"^law so far   mean force over 4 runs, adhesion\.work = 1 mJ/m\^2$", told, re.MULTILINE)
     assert re.search(r"^ {13}\S+ ± \S+ [um]N at separation 1 um, loading$", told, re.MULTILINE)
-    written = json.loads(CliRunner().invoke(main, ["info", str(folder), "--json"]).output)["parts"]["law"]
+    written = json.loads(said("info", folder, "--json"))["parts"]["law"]
     assert written == {
         "swept": {"adhesion_work": 0.001},
         "variable": "force",
@@ -94,8 +92,7 @@ def test_of_a_sweep_the_first_cell_is_told_and_each_of_its_files_is_read_once(
     for limit in ({"_FILES": 1}, {"_AT_ONCE": 0}):
         with monkeypatch.context() as patch:
             patch.setattr(module, *limit.popitem())
-            told = CliRunner().invoke(main, ["info", str(folder)]).output
-        assert "law so far   mean force over 2 of 4 runs, " in told
+            assert "law so far   mean force over 2 of 4 runs, " in said("info", folder)
 
 
 def test_files_that_vanish_or_are_damaged_do_not_count(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -113,25 +110,14 @@ def test_files_that_vanish_or_are_damaged_do_not_count(tmp_path: Path, monkeypat
     manifest.write_text(manifest.read_text().replace("roughmdr 0", "roughmdr 9"))
     kept = read_kept(folder)
     assert SoFar(progress_of(kept)).law(kept) is None
-    assert "law so far" not in CliRunner().invoke(main, ["info", str(folder)]).output
+    assert "law so far" not in said("info", folder)
 
 
 @pytest.mark.large
-def test_a_batch_that_was_killed_and_one_that_is_followed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(sys.modules["roughmdr.cli.info"], "_PAUSE", 0.02)
+def test_a_batch_that_was_killed(tmp_path: Path) -> None:
     folder, table = tmp_path / "batch", slow_scene(96, count=2000)
     write_scene(folder, table)
     with running(Batch(folder, "--workers", "1")) as batch:
         batch.wait_for_lines(5)
         batch.kill()
     check(law_of(folder / "out.nc.parts"), table)
-    with running(Batch(folder, "--workers", "1")) as batch:
-        batch.wait_for_lines(8)
-        done = CliRunner().invoke(main, ["info", "--follow", str(folder / "out.nc")])
-        batch.succeed()
-    assert done.exit_code == 0, done.output
-    counts = [int(each) for each in re.findall(r"^law so far   mean force over (\d+) runs$", done.output, re.MULTILINE)]
-    assert counts
-    assert counts == sorted(counts)
-    assert "pull-off" in done.output
-    assert lines(folder) == []

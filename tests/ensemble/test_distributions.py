@@ -8,12 +8,11 @@ from typing import Any, NamedTuple
 import numpy as np
 import pytest
 import scipy.stats
-from click.testing import CliRunner
+from command import said
 from hypothesis import Phase, assume, given, settings, strategies as st
 from scenes import ASPERITIES, scene
 
 import roughmdr as rm
-from roughmdr.cli import main
 from roughmdr.ensemble.random.distribution_families import known_families
 from roughmdr.scene import read
 
@@ -193,12 +192,10 @@ def test_heights_without_a_location_are_warned_of(tmp_path: Path) -> None:
     with pytest.warns(rm.LimitWarning, match=told):
         rm.generate(table["asperities"], seed=1)
     for command in (["plan", "out.nc"], ["info", "out.nc"], ["run", "out.nc", "-o", "again.nc"]):
-        done = CliRunner().invoke(main, [str(tmp_path / word) if word.endswith(".nc") else word for word in command])
-        assert done.exit_code == 0, done.output
-        assert "warning      asperities.height: expon" in done.output
+        assert "warning      asperities.height: expon" in said(*command, cwd=tmp_path)
     second = {"second": {"share": 0.1, "height": OWN}}
     assert "asperities.second.height: expon" in generated({**ASPERITIES, **second}, seed=1)[1]
-    quiet_ones = [{"height": {**OWN, **said}} for said in SAID]
+    quiet_ones = [{"height": {**OWN, **each}} for each in SAID]
     quiet_ones += [{"height": {"distribution": "expon", "std": "1 um"}}]
     quiet_ones += [{"height": {"distribution": name, "scale": "1 um"}} for name in ("norm", "cauchy", "logistic")]
     quiet_ones += [{"radius": {"distribution": "expon", "scale": "1 um", "min": "1 nm"}}]
@@ -209,15 +206,15 @@ def test_heights_without_a_location_are_warned_of(tmp_path: Path) -> None:
 def test_a_sweep_warns_once_with_the_number_of_cells() -> None:
     table = scene(asperities={**ASPERITIES, "count": 20, "height": OWN}, batch={"realizations": 1})
     found = rm.run({**table, "sweep": {"asperities.height.distribution": ["normal", "expon", "rayleigh"]}})
-    said = [line for line in found.attrs["warnings"].splitlines() if NOT_AT_ZERO in line]
-    assert len(said) == 2
-    assert all(line.endswith("(in 1 of 3 cells)") for line in said)
+    told = [line for line in found.attrs["warnings"].splitlines() if NOT_AT_ZERO in line]
+    assert len(told) == 2
+    assert all(line.endswith("(in 1 of 3 cells)") for line in told)
 
 
-@pytest.mark.parametrize("said", [{"loc": 0.0}, {}])
-def test_an_explicit_loc_changes_no_number(said: dict[str, float]) -> None:
+@pytest.mark.parametrize("given_loc", [{"loc": 0.0}, {}])
+def test_an_explicit_loc_changes_no_number(given_loc: dict[str, float]) -> None:
     """Results of a scene that says loc = 0 are those of one that leaves it out."""
-    table = scene(asperities={**ASPERITIES, "count": 20, "height": {**OWN, **said}}, batch={"realizations": 2})
+    table = scene(asperities={**ASPERITIES, "count": 20, "height": {**OWN, **given_loc}}, batch={"realizations": 2})
     plain = rm.run(scene(asperities={**ASPERITIES, "count": 20, "height": OWN}, batch={"realizations": 2}))
     found = rm.run(table)
     assert found.cell_key.item() == plain.cell_key.item()

@@ -7,16 +7,15 @@ from typing import Any
 
 import numpy as np
 import pytest
-import tomli_w
 import xarray as xr
-from click.testing import CliRunner
+from batches import write_scene
+from command import said
 from oracles.gaussian_maps import gaussian_map
 from scenes import scene
 from scipy.special import ellipe, ellipk
 from studies.versus_bem.ensembles import write_map
 
 import roughmdr as rm
-from roughmdr.cli import main
 from roughmdr.elements.half_space import BoundaryElements
 from roughmdr.ensemble.maps.height_map import HeightMap
 from roughmdr.ensemble.maps.hills.ellipse import area_share, complete_elliptic
@@ -275,17 +274,13 @@ def test_adhesive_hills_are_coupled_and_part(map_file: Path) -> None:
 def test_what_is_said_of_hills(map_file: Path, tmp_path: Path) -> None:
     result = rm.run(of_hills(map_file, interaction={"model": "pairwise"}), tmp_path / "out.nc")
     assert np.isnan(result.trusted_separation).all()
-    said = CliRunner().invoke(main, ["info", str(tmp_path / "out.nc")]).output
-    assert "hills of a map are coupled in pairs: force along the path within" in said
-    assert "the map resolves its hills" in said
-    (tmp_path / "hills.toml").write_text(tomli_w.dumps(of_hills(map_file)))
-    saved = (
-        CliRunner().invoke(main, ["generate", str(tmp_path / "hills.toml"), "-o", str(tmp_path / "hills.nc")]).output
-    )
+    told = said("info", tmp_path / "out.nc")
+    assert "hills of a map are coupled in pairs: force along the path within" in told
+    assert "the map resolves its hills" in told
+    write_scene(tmp_path, of_hills(map_file))
+    saved = said("generate", "scene.toml", "-o", "hills.nc", cwd=tmp_path)
     assert "each has the profile of its best contacts" in saved
-    cut = CliRunner().invoke(main, ["generate", str(tmp_path / "hills.toml"), "--cutoffs", "20 um"])
-    assert cut.exit_code == 0, cut.output
-    assert "none" in cut.output
+    assert "none" in said("generate", "scene.toml", "--cutoffs", "20 um", cwd=tmp_path)
 
 
 def test_the_error_by_the_border_falls_with_the_side_and_is_a_part_of_the_model_error() -> None:

@@ -5,13 +5,13 @@ from typing import Any
 import numpy as np
 import pytest
 import xarray as xr
-from click.testing import CliRunner
+from batches import write_scene
+from command import said
 from hypothesis import given, settings, strategies as st
 from scenes import ASPERITIES, scene
 from scipy.spatial import cKDTree
 
 import roughmdr as rm
-from roughmdr.cli import main
 from roughmdr.ensemble.lattice import lattice_of
 from roughmdr.scene import read
 
@@ -146,10 +146,8 @@ def test_a_part_of_a_lattice_is_one_of_the_same_pitch(most: int) -> None:
 
 
 def test_the_plan_says_what_fits(tmp_path: Any) -> None:
-    import tomli_w
-
     section = {**ASPERITIES, "placement": "hexagonal", "pitch": "20 um"}
     del section["count"]
-    (tmp_path / "scene.toml").write_text(tomli_w.dumps(scene(asperities=section, batch={"realizations": 1})))
-    said = CliRunner().invoke(main, ["plan", str(tmp_path / "scene.toml")]).stdout
-    assert "hexagonal lattice, 58 rows of 50, pitch 20 um, patch 1 mm x 1.005 mm" in said
+    write_scene(tmp_path, scene(asperities=section, batch={"realizations": 1}))
+    told = said("plan", "scene.toml", cwd=tmp_path)
+    assert "hexagonal lattice, 58 rows of 50, pitch 20 um, patch 1 mm x 1.005 mm" in told

@@ -1,13 +1,10 @@
 """[accuracy] where few asperities bear most of the force: the error includes rare ones that were not drawn."""
 
 import math
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
-import xarray as xr
-from batches import interrupted
 from forms import large
 from hypothesis import given, settings, strategies as st
 from scenes import ASPERITIES, scene
@@ -135,20 +132,3 @@ def test_forces_whose_squares_no_float_holds(effective_modulus: float) -> None:
         for m in (4e6, effective_modulus)
     ]
     assert count[0] == count[1]
-
-
-@pytest.mark.large
-@pytest.mark.parametrize("keep", ["curves", "statistics"])
-def test_same_bits_for_any_tasks_and_after_an_interruption(
-    keep: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    table = cones(3.0, 20, 0.1, output={"variables": ["force"], "keep": keep})
-    plain = execute(make_plan(read(table)), None, Backend(workers=1, runs_per_task=1000)).to_xarray()
-    out = tmp_path / "out.nc"
-    interrupted(table, out, 3, monkeypatch, runs_per_task=8)
-    for found in (
-        execute(make_plan(read(table)), None, Backend(workers=3, runs_per_task=7)).to_xarray(),
-        execute(make_plan(read(table)), out, Backend(runs_per_task=5)).to_xarray(),
-    ):
-        dropped = [each.drop_vars("run_time").assign_attrs(history="", checksum="") for each in (found, plain)]
-        xr.testing.assert_identical(*dropped)

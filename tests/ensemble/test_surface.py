@@ -8,9 +8,7 @@ import xarray as xr
 from hypothesis import given, settings, strategies as st
 
 import roughmdr as rm
-from roughmdr.ensemble.maps.detrend import remove_trend
 from roughmdr.ensemble.maps.height_map import HeightMap
-from roughmdr.ensemble.maps.read_map import read_map
 from roughmdr.ensemble.maps.summits import find_summits
 
 OPTICAL = Path(__file__).parents[3] / "shared" / "surfaces" / "optical.nc"
@@ -66,55 +64,8 @@ def test_the_radius_converges_with_the_grid_on_an_egg_box() -> None:
     assert errors[-1] < 0.01
 
 
-def test_a_quadratic_is_removed() -> None:
-    x, y = np.arange(30.0)[:, None], np.arange(40.0)[None, :]
-    trend = 3.0 + 0.1 * x - 0.2 * y + 0.01 * x * x + 0.02 * x * y - 0.03 * y * y
-    bumps = np.sin(x) * np.cos(1.3 * y)
-    nothing, both = trend.copy(), trend + bumps
-    for height in (nothing, both, bumps):
-        remove_trend(height, "quadratic")
-    assert np.max(np.abs(nothing)) < 1e-12 * np.max(np.abs(trend))
-    np.testing.assert_allclose(both, bumps, atol=1e-11)
-
-
-def test_units_of_a_map(tmp_path: Path) -> None:
-    rng = np.random.default_rng(2)
-    bumps = rng.normal(size=(20, 30))
-    metres = read_map(write_map(tmp_path / "a.nc", bumps * 1e-9))
-    nano = read_map(write_map(tmp_path / "b.nc", bumps, units="nm"))
-    np.testing.assert_allclose(nano.height, metres.height, rtol=1e-15)
-    assert (nano.dx, nano.dy) == pytest.approx((1e-6, 2e-6), rel=1e-12)
-
-
 def surface(path: Path) -> xr.Dataset:
     return rm.generate({"source": "surface", "file": str(path)}, seed=0)
-
-
-@pytest.mark.parametrize(
-    ("height", "extra", "says"),
-    [
-        (np.full((9, 9), np.nan), {}, "all its 81 heights are undefined"),
-        (np.zeros((9, 9)), {}, "no summit"),
-        (np.zeros((1, 9)), {}, "1 x 9 points; it needs at least 3 x 3"),
-        (np.eye(9), {"units": "Pa"}, "'Pa' is a unit of Pa"),
-        (np.eye(9), {"x": np.arange(9) ** 2.0}, "coordinate x is not evenly spaced"),
-    ],
-)
-def test_a_useless_map_is_refused(tmp_path: Path, height: np.ndarray, extra: dict[str, object], says: str) -> None:
-    path = write_map(tmp_path / "map.nc", height, **extra)
-    with pytest.raises(rm.SceneError, match=says):
-        surface(path)
-
-
-def test_invalid_maps_are_refused(tmp_path: Path) -> None:
-    with pytest.raises(rm.SceneError, match="no such file"):
-        surface(tmp_path / "none.nc")
-    (tmp_path / "text.nc").write_text("not netCDF")
-    with pytest.raises(rm.SceneError, match="not a netCDF file"):
-        surface(tmp_path / "text.nc")
-    xr.Dataset({"force": ("x", [1.0])}).to_netcdf(tmp_path / "other.nc")
-    with pytest.raises(rm.SceneError, match="must hold a variable height"):
-        surface(tmp_path / "other.nc")
 
 
 @pytest.mark.skipif(not OPTICAL.exists(), reason="the measured surface is not here")

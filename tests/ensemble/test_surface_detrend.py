@@ -7,11 +7,10 @@ import numpy as np
 import pytest
 import tomli_w
 import xarray as xr
-from click.testing import CliRunner
+from command import roughmdr, said
 from scenes import scene
 
 import roughmdr as rm
-from roughmdr.cli import main
 from roughmdr.ensemble.ensemble import Ensemble
 from roughmdr.ensemble.maps.detrend import remove_short_waves, remove_trend
 from roughmdr.ensemble.maps.height_map import HeightMap, map_statistics
@@ -252,8 +251,7 @@ def test_the_warning_of_a_coarse_map_goes_along(folder: Path, recwarn: pytest.Wa
         assert each.attrs["warnings"].count("coarse.npy: ") == each.attrs["warnings"].count("points a summit") == 1
     assert len(warned(recwarn.list)) == 4
     for arguments in (["generate", "s.toml", "-o", "made.nc"], ["run", "s.toml", "-o", "out2.nc"], ["info", "out.nc"]):
-        done = CliRunner().invoke(main, arguments, catch_exceptions=False)
-        assert done.stdout.count("the map does not resolve its summits (") == 1, arguments
+        assert roughmdr(*arguments).stdout.count("the map does not resolve its summits (") == 1, arguments
     with xr.open_dataset("made.nc") as written:
         assert written.attrs["warnings"] == made.attrs["warnings"]
 
@@ -265,9 +263,8 @@ def test_a_resolved_map_is_not_warned_of(folder: Path) -> None:
         assert (made.attrs["periodic"], made.attrs["detrend"]) == (periodic, trend)
     over = rm.generate({"source": "surface", "file": "fine1.nc", "periodic": False, "detrend": "plane"}, seed=0)
     assert (over.attrs["periodic"], over.attrs["detrend"]) == (0, "plane")
-    with CliRunner().isolation():
-        done = CliRunner().invoke(main, ["generate", "s.toml", "-o", "e.nc", "--set", 'asperities.cutoff="8 um"'])
-    assert "detrended: quadratic, without waves below 8 um" in done.stdout
+    told = said("generate", "s.toml", "-o", "e.nc", "--set", 'asperities.cutoff="8 um"')
+    assert "detrended: quadratic, without waves below 8 um" in told
 
 
 @pytest.mark.parametrize(

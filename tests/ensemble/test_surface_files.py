@@ -23,9 +23,10 @@ def bumps() -> np.ndarray:
     return 1e-7 * np.random.default_rng(3).normal(size=(NX, NY))
 
 
-def netcdf(path: Path, height: np.ndarray, **attrs: object) -> None:
-    x, y = (np.arange(NX) + 0.5) * 0.5e-6, (np.arange(NY) + 0.5) * 1e-6
-    xr.Dataset({"height": (("x", "y"), height)}, coords={"x": x, "y": y}, attrs=attrs).to_netcdf(path)
+def netcdf(path: Path, height: np.ndarray, units: str | None = None, power: float = 1.0, **attrs: object) -> None:
+    x, y = ((np.arange(NX) + 0.5) * 0.5e-6) ** power, (np.arange(NY) + 0.5) * 1e-6
+    own = {} if units is None else {"units": units}
+    xr.Dataset({"height": (("x", "y"), height, own)}, coords={"x": x, "y": y}, attrs=attrs).to_netcdf(path)
 
 
 def text(delimiter: str, encoding: str = "utf-8", header: str = "") -> Callable[[Path, np.ndarray], None]:
@@ -240,6 +241,9 @@ REFUSED: list[tuple[str, Callable[[Path], object], dict[str, object], str]] = [
         "periodic is 'perhaps'; it must be",
     ),
     ("a.nc", lambda path: netcdf(path, bumps()), {"size": None, "channel": "z"}, "must hold a variable z"),
+    ("a.nc", lambda path: netcdf(path, bumps(), "Pa"), {"size": None}, "'Pa' is a unit of Pa"),
+    ("a.nc", lambda path: netcdf(path, bumps(), power=2.0), {"size": None}, "coordinate x is not evenly spaced"),
+    ("a.nc", written("not netCDF"), {"size": None}, "not a netCDF file"),
     ("a.npy", lambda path: path.mkdir(), {}, "is a folder; expected a file"),
     ("b.npy/../a.npy", GOOD, {}, "no such file"),
 ]
@@ -257,13 +261,13 @@ def test_invalid_maps_are_refused(
 
 
 def test_a_unit_and_a_size_are_not_contradicted(tmp_path: Path) -> None:
-    netcdf(tmp_path / "a.nc", bumps())
-    with xr.open_dataset(tmp_path / "a.nc") as data:
-        data["height"].attrs["units"] = "m"
-        data.to_netcdf(tmp_path / "b.nc")
+    netcdf(tmp_path / "b.nc", bumps(), "m")
     with pytest.raises(rm.SceneError, match="says itself that heights are in m; leave out unit = 'nm'"):
         generate(tmp_path / "b.nc", unit="nm")
-    assert generate(tmp_path / "b.nc", unit="m", size=SIZE).identical(generate(tmp_path / "b.nc"))
+    found = generate(tmp_path / "b.nc")
+    assert generate(tmp_path / "b.nc", unit="m", size=SIZE).identical(found)
+    netcdf(tmp_path / "nm.nc", 1e9 * bumps(), "nm")
+    xr.testing.assert_allclose(generate(tmp_path / "nm.nc"), found, rtol=1e-12)
 
 
 def test_a_missing_package_is_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

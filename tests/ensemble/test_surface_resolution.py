@@ -4,14 +4,13 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-import tomli_w
-from click.testing import CliRunner
+from batches import write_scene
+from command import said
 from hypothesis import given, settings, strategies as st
 from scenes import scene
 from test_surface_detrend import waves
 
 import roughmdr as rm
-from roughmdr.cli import main
 from roughmdr.ensemble.maps.height_map import HeightMap
 from roughmdr.ensemble.maps.resolution import MAX_UNCERTAINTY, radius_errors, radius_uncertainty, verdict
 from roughmdr.ensemble.maps.summits import find_summits
@@ -120,11 +119,6 @@ def test_heights_before_and_after_the_trend(tmp_path: Path) -> None:
     assert found.attrs["rms_height"] == pytest.approx(1e-7, rel=0.2)
 
 
-def again_from(asperities: dict[str, object], folder: Path) -> str:
-    (folder / "s.toml").write_text(tomli_w.dumps(scene(asperities=asperities, batch=None)))
-    return str(folder / "s.toml")
-
-
 def test_the_uncertainty_stays_with_a_saved_ensemble_and_is_of_maps_alone(tmp_path: Path) -> None:
     made = rm.generate(section(tmp_path, waves(128, 16, 64)), seed=0)
     made.to_netcdf(tmp_path / "saved.nc")
@@ -132,7 +126,8 @@ def test_the_uncertainty_stays_with_a_saved_ensemble_and_is_of_maps_alone(tmp_pa
     again = rm.generate(saved, seed=0)
     assert isinstance(made.attrs["radius_uncertainty"], float)
     assert again.attrs["radius_uncertainty"] == made.attrs["radius_uncertainty"]
-    assert CliRunner().invoke(main, ["generate", again_from(saved, tmp_path), "-o", f"{tmp_path}/a.nc"]).exit_code == 0
+    write_scene(tmp_path, scene(asperities=saved, batch=None))
+    said("generate", "scene.toml", "-o", "a.nc", cwd=tmp_path)
     made.assign_attrs(radius_uncertainty=-1.0).to_netcdf(tmp_path / "saved.nc")
     with pytest.raises(rm.SceneError, match="attribute radius_uncertainty is -1"):
         rm.generate(saved, seed=0)

@@ -223,7 +223,9 @@ def random_ensemble(seed: int, units: Units) -> Ensemble:
     return placed(units, at, z - z.max())
 
 
-def check_random(seed: int) -> None:
+@pytest.mark.few(1)
+@pytest.mark.parametrize("seed", range(150))
+def test_random_contacts_are_in_stable_equilibrium(seed: int) -> None:
     units = UNITS[seed % 3]
     h = np.concatenate([np.linspace(0.5, -1.5, 6), np.linspace(-1.5, 5.0, 12)])
     states = at_rest(random_ensemble(seed, units), units, h, 1 + seed % 2)
@@ -235,18 +237,6 @@ def check_random(seed: int) -> None:
         assert np.linalg.eigvalsh(0.5 * (radii + radii.T)).min() > 0.0
 
 
-@pytest.mark.few(1)
-@pytest.mark.parametrize("seed", range(24))
-def test_random_contacts_are_in_stable_equilibrium(seed: int) -> None:
-    check_random(seed)
-
-
-@pytest.mark.large
-@pytest.mark.parametrize("seed", range(24, 150))
-def test_more_random_contacts_are_in_stable_equilibrium(seed: int) -> None:
-    check_random(seed)
-
-
 def graded(begin: float, end: float, count: int = 24) -> tuple[Floats, Floats]:
     """Return Gauss nodes and weights between two separations, for a force with a root at its end."""
     nodes, weights = np.polynomial.legendre.leggauss(count)
@@ -254,7 +244,9 @@ def graded(begin: float, end: float, count: int = 24) -> tuple[Floats, Floats]:
     return end - (end - begin) * (1.0 - u) ** 2, 2.0 * (end - begin) * (1.0 - u) * w
 
 
-def check_closed(seed: int) -> None:
+@pytest.mark.few(1)
+@pytest.mark.parametrize("seed", range(20))
+def test_cycles_close(seed: int) -> None:
     """The work of the force along a closed cycle is what the jumps dissipate."""
     units, order = UNITS[seed % 3], 1 + seed % 2
     ensemble = random_ensemble(seed, units)
@@ -270,18 +262,6 @@ def check_closed(seed: int) -> None:
     work = -float(np.sum(force * weight)) * units.d0
     assert not found.steps[-1].contacts
     assert found.steps[-1].dissipated == pytest.approx(work, rel=1e-8)
-
-
-@pytest.mark.few(1)
-@pytest.mark.parametrize("seed", range(5))
-def test_cycles_close(seed: int) -> None:
-    check_closed(seed)
-
-
-@pytest.mark.large
-@pytest.mark.parametrize("seed", range(5, 20))
-def test_more_cycles_close(seed: int) -> None:
-    check_closed(seed)
 
 
 @pytest.mark.few(1)

@@ -9,8 +9,6 @@ import pytest
 import xarray as xr
 from scenes import scene
 
-from roughmdr.batch.plan import make_plan
-from roughmdr.batch.resume.keys import keys_of
 from roughmdr.scene import read
 
 SCRIPT = Path(__file__).parents[2] / "pipelines" / "study.py"
@@ -45,17 +43,3 @@ def test_cells_with_the_same_swept_values_have_their_sections_in_common() -> Non
     assert len({id(cell.asperities) for cell in cells}) == 2
     assert len({id(cell.path) for cell in cells}) == 1
     assert [cell.work for cell in cells] == [0.01, 0.01, 0.02, 0.02, 0.03, 0.03]
-
-
-def test_a_cell_of_a_sweep_is_the_scene_that_it_stands_for() -> None:
-    """Key and table of each cell are those of a scene of its own, wherever its sections came from."""
-    swept = {"adhesion.work": [0.01, 0.02], "asperities.radius": ["40 um", 5e-5], "adhesion.strength": ["1 MPa", 2e6]}
-    whole = read(scene(adhesion={"model": "dugdale"}, sweep=swept))
-    keys = keys_of(make_plan(whole), "sampled")
-    assert len(set(keys)) == 8
-    for cell, key, values in zip(whole.cells, keys, whole.sweep.cells(), strict=True):
-        adhesion = {"model": "dugdale", "work": values["adhesion.work"], "strength": values["adhesion.strength"]}
-        alone = scene(adhesion=adhesion)
-        alone["asperities"]["radius"] = values["asperities.radius"]
-        assert keys_of(make_plan(read(alone)), "sampled") == [key]
-        assert read(alone).toml == cell.toml

@@ -5,18 +5,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 from carried_out import CarriedOut
-from studies.spectrum import METHODS, laws, means
+from studies.spectrum import METHODS, means
 
 STUDIED = "spectrum"
-
-
-@pytest.mark.large
-def test_hills_of_one_map_are_nearest() -> None:
-    force = {method: law["force"].to_numpy() for method, law in laws(0.8, 1).items()}
-    off = {method: np.abs(force[method] / force["boundary elements"] - 1.0).mean() for method in METHODS[:-1]}
-    nearest = off.pop("hills in pairs")
-    assert 0.0 < nearest < 0.04
-    assert nearest < 0.5 * min(off.values())
 
 
 @pytest.mark.large

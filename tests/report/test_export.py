@@ -8,12 +8,11 @@ from typing import Any
 import numpy as np
 import pytest
 import xarray as xr
-from click.testing import CliRunner
+from command import roughmdr, said
 from exports import header_of, of_abaqus, of_ansys, of_csv, of_json, of_moose
 from scenes import ASPERITIES, scene
 
 import roughmdr as rm
-from roughmdr.cli import main
 from roughmdr.storage.labelled import Labelled
 
 PRESSED = {"separation": {"start": "clear", "stop": "0.5 sigma", "steps": 120}, "unload": True}
@@ -306,17 +305,16 @@ def test_a_path_that_begins_in_contact_is_refused(tmp_path: Path) -> None:
 
 def test_an_export_gives_way_to_an_export_and_nothing_else_does(files: Path, tmp_path: Path) -> None:
     shutil.copy(files / "hertz.nc", tmp_path / "law.nc")
-    call = ["export", str(tmp_path / "law.nc"), "--error", "5e-3"]
-    done = CliRunner().invoke(main, [*call, "-o", str(tmp_path / "law.inp"), "--to", "abaqus", "--units", "mm,N,MPa"])
-    assert done.exit_code == 0, done.output
-    assert done.output.splitlines()[-1] == f"export       {tmp_path / 'law.inp'}"
+    call = ["export", tmp_path / "law.nc", "--error", "5e-3"]
+    told = said(*call, "-o", tmp_path / "law.inp", "--to", "abaqus", "--units", "mm,N,MPa")
+    assert told.splitlines()[-1] == f"export       {tmp_path / 'law.inp'}"
     first = (tmp_path / "law.inp").read_text()
     rm.export(tmp_path / "law.nc", tmp_path / "law.inp", to="abaqus", error=5e-3, units="mm,N,MPa")
     assert (tmp_path / "law.inp").read_text() == first
     (tmp_path / "notes.csv").write_text("notes")
     for out, says in (("notes.csv", "is no export"), ("law.txt", "must end in .csv"), ("law.nc", "is an input")):
-        done = CliRunner().invoke(main, [*call, "-o", str(tmp_path / out), "--to", "csv"])
-        assert (done.exit_code, says in done.output) == (2, True), done.output
+        done = roughmdr(*call, "-o", tmp_path / out, "--to", "csv")
+        assert (done.returncode, says in done.stderr) == (2, True), done.stderr
     assert (tmp_path / "notes.csv").read_text() == "notes"
     rm.export(tmp_path / "law.nc", tmp_path / "notes.csv", to="csv", error=5e-3, fresh=True)
     assert len(of_csv(tmp_path / "notes.csv")) > 5

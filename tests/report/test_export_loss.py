@@ -1,5 +1,6 @@
 """Energy lost over the overclosure that loops reach: against other paths, finer ones, and the jumps' own account."""
 
+import re
 from itertools import pairwise
 from pathlib import Path
 from typing import Any
@@ -63,12 +64,20 @@ def test_a_sweep_of_the_closest_separation_gives_a_row_each(tmp_path: Path) -> N
 
 @pytest.mark.large
 def test_loops_of_one_path_lose_what_paths_of_their_own_do(tmp_path: Path) -> None:
+    """So does the header of a table of forces, which tells the loss of each; what is not undone has none yet."""
     alone = losses(rm.run(swept()), tmp_path / "alone.csv")
-    together = losses(
-        rm.run(scene(path=looped(*STOPS[::-1]), batch={"estimator": "expected"})), tmp_path / "together.csv"
-    )
+    result = rm.run(scene(path=looped(*STOPS[::-1]), batch={"estimator": "expected"}))
+    together = losses(result, tmp_path / "together.csv")
     names = [name for name in alone if not name.startswith("energy_lost_error")]
     np.testing.assert_allclose(together[names], alone[names], rtol=1e-6)
+    half = rm.run(scene(path=through(FAR, 0.5, FAR, 0.0, 1.0), batch={"estimator": "expected"}))
+    for name, each, lost in (
+        ("all", result, alone["energy_lost [N m]"]),
+        ("half", half, alone["energy_lost [N m]"][1:2]),
+    ):
+        rm.export(each, tmp_path / f"{name}.table", to="lammps", quantity="force", error=0.05, distance=10e-6)
+        told = re.findall(r"(\S+) N m to \S+ m within \S+ \(loading takes", header_of(tmp_path / f"{name}.table"))
+        np.testing.assert_allclose(np.sort([float(loss) for loss in told]), np.sort(lost), rtol=1e-3)
 
 
 def test_the_stated_errors_hold_of_the_mean_of_realisations(tmp_path: Path) -> None:
@@ -84,6 +93,7 @@ def test_the_stated_errors_hold_of_the_mean_of_realisations(tmp_path: Path) -> N
     assert row[1] == pytest.approx(float(runs.mean()), rel=1e-9)
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize(
     ("turns", "rows"),
     [

@@ -154,27 +154,6 @@ def test_the_header_tells_loss_tension_and_stiffness(file: Path) -> None:
     assert stiffest == pytest.approx(np.max(-np.diff(law) / np.diff(h)), rel=1e-3)
 
 
-@pytest.mark.large
-def test_each_loop_of_a_path_tells_its_loss(tmp_path: Path) -> None:
-    """It is that of a path that comes as far alone, over the overclosure of a loop."""
-    far, depths = 6.0, (1.0, 0.5, 0.0)
-    loops = [np.concatenate([np.linspace(far, deep, 120), np.linspace(deep, far, 120)]) for deep in depths]
-
-    def said(name: str, *parts: Floats) -> str:
-        separations = [f"{each} sigma" for each in np.concatenate(parts)]
-        rm.run(scene(path={"separation": separations}, batch={"estimator": "expected"}), tmp_path / f"{name}.nc")
-        return header_of(exported(tmp_path / f"{name}.nc", f"{name}.table", error=0.05))
-
-    pattern = r"(\S+ N m to \S+ m) within \S+ \(loading takes \S+\)"
-    together = re.findall(pattern, said("all", *loops))
-    assert together == [re.search(pattern, said(f"{i}", loop))[1] for i, loop in enumerate(loops)]  # type: ignore[index]
-    half = said("half", loops[1], np.linspace(far, 0.0, 120), np.linspace(0.0, 1.0, 20))
-    assert re.findall(pattern, half) == together[1:2]  # what is not undone has no loss yet
-    losses = [float(each.split()[0]) for each in together]
-    assert losses == sorted(losses)
-    assert losses[0] < 0.5 * losses[-1]
-
-
 @pytest.mark.parametrize(
     ("units", "tag", "length", "force"),
     [("um,nN", "UNITS: micro", 1e-6, 1e-9), ("nm,pN", "UNITS: nano", 1e-9, 1e-12), ("mm,N", None, 1e-3, 1.0)],

@@ -7,14 +7,14 @@ from typing import Any
 
 import numpy as np
 import pytest
-from click.testing import CliRunner
+from batches import write_scene
+from command import said
 from hypothesis import given, settings, strategies as st
 from numpy.typing import ArrayLike
 from scenes import scene
 
 import roughmdr as rm
 from roughmdr.aggregate.law import effective_number
-from roughmdr.cli import main
 from roughmdr.report.contacts import describe_sample
 from roughmdr.variables import RUN_DIAGNOSTICS, SAMPLE
 
@@ -68,16 +68,11 @@ def test_it_is_the_scatter_of_realisations() -> None:
 
 
 def test_plan_run_and_info_say_it(tmp_path: Path) -> None:
-    import tomli_w
-
     table = few(batch=None, seed=2, sweep={"asperities.count": [1000, 100_000]})
-    file, out = tmp_path / "few.toml", tmp_path / "few.nc"
-    file.write_text(tomli_w.dumps(table))
+    write_scene(tmp_path, table)
     texts = []
-    for command in (["plan", str(file)], ["run", str(file), "-o", str(out)], ["info", str(out)]):
-        outcome = CliRunner().invoke(main, [*command, "--json"])
-        assert outcome.exit_code == 0, outcome.output
-        document = json.loads(outcome.stdout)
+    for command in (["plan", "scene.toml"], ["run", "scene.toml", "-o", "few.nc"], ["info", "few.nc"]):
+        document = json.loads(said(*command, "--json", cwd=tmp_path))
         whole = document["plan"] or document["result"]
         texts.append(whole["sample"])
         numbers, errors, of_area = ([cell[name] for cell in whole["cells"]] for name in SAMPLE)

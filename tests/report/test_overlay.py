@@ -7,13 +7,12 @@ from typing import Any
 import numpy as np
 import pytest
 import xarray as xr
-from click.testing import CliRunner, Result
+from command import roughmdr, said
 from scenes import ASPERITIES, scene
 from scipy import stats
 
 import roughmdr as rm
 from roughmdr.batch.plan import Plan, make_plan
-from roughmdr.cli import main
 from roughmdr.pictures.overlay import Overlay, overlay_expected, overlay_theory
 from roughmdr.scene import read
 from roughmdr.spectrum import SelfAffine
@@ -171,7 +170,6 @@ def test_a_gap_without_pressure_is_refused(separation: float) -> None:
         rm.theory.persson_pressure(separation=separation, effective_modulus=MODULUS, spectrum=SPECTRUM)
 
 
-SAVED = {"source": "file", "file": "saved.nc"}
 CUT_BACK = {"separation": [2e-6, 0.0, 2e-6, 1e-6]}
 GW, FT, DMT = "greenwood_williamson", "fuller_tabor", "dmt_maugis"
 
@@ -283,26 +281,20 @@ def test_a_sweep_has_lines_of_every_cell_to_which_a_law_applies() -> None:
     assert expected.remarks == ["drawn"]
 
 
-def roughmdr(*arguments: str) -> Result:
-    return CliRunner().invoke(main, arguments, catch_exceptions=False)
-
-
 @pytest.mark.large
 def test_a_picture_names_its_laws_and_the_command_says_the_rest(tmp_path: Path) -> None:
     result, picture = tmp_path / "out.nc", tmp_path / "out.svg"
     rm.run(scene(asperities=SUMMITS, batch={"realizations": 2}, path=WAY), result)
-    plain = roughmdr("plot", str(result), "-o", str(picture))
-    assert plain.output == f"picture      {picture}\n"
+    plain = said("plot", result, "-o", picture)
+    assert plain == f"picture      {picture}\n"
     assert "<!-- expected -->" not in picture.read_text()
-    both = roughmdr("plot", str(result), "-o", str(picture), "--with-expected", "--with-theory")
-    assert both.exit_code == 0
-    lines = both.output.splitlines()
+    lines = said("plot", result, "-o", picture, "--with-expected", "--with-theory").splitlines()
     assert lines[:3] == [
         "expected     drawn",
         "theory       greenwood_williamson: not drawn: the scene has adhesion",
         "theory       fuller_tabor: drawn",
     ]
-    assert lines[-1] == plain.output.strip()
+    assert lines[-1] == plain.strip()
     drawn = picture.read_text()
     assert [drawn.count(f"<!-- {law} -->") for law in ("expected", FT, GW)] == [1, 1, 0]
 
@@ -310,8 +302,8 @@ def test_a_picture_names_its_laws_and_the_command_says_the_rest(tmp_path: Path) 
 def test_a_picture_of_a_sweep_names_cells_and_laws(tmp_path: Path) -> None:
     result, picture = tmp_path / "out.nc", tmp_path / "out.svg"
     rm.run(scene(asperities=SUMMITS, batch=None, path=WAY, sweep={"adhesion.work": [0.0, 0.05]}), result)
-    done = roughmdr("plot", str(result), "-o", str(picture), "--variable", "force", "--with-theory")
-    assert "theory       greenwood_williamson, fuller_tabor: drawn (in 1 of 2 cells)\n" in done.output
+    told = said("plot", result, "-o", picture, "--variable", "force", "--with-theory")
+    assert "theory       greenwood_williamson, fuller_tabor: drawn (in 1 of 2 cells)\n" in told
     drawn = picture.read_text()
     assert [drawn.count(f"<!-- {text} -->") for text in (GW, FT, "adhesion_work = 50 mJ/m^2")] == [1, 1, 1]
 
@@ -321,17 +313,17 @@ def test_asperities_that_are_not_drawn_have_no_expected_law(tmp_path: Path) -> N
     rm.generate(SUMMITS, seed=1).to_netcdf(ensemble)
     saved = {"source": "file", "file": str(ensemble)}
     rm.run(scene(asperities=saved, batch=None, path=WAY), result)
-    done = roughmdr("plot", str(result), "-o", str(tmp_path / "out.png"), "--with-expected", "--with-theory")
-    assert "expected     not drawn: nothing of source 'file' is drawn\n" in done.output
-    assert f" {FT}, {DMT}: not drawn: asperities.source is 'file', not 'random' or 'surface'\n" in done.output
+    told = said("plot", result, "-o", tmp_path / "out.png", "--with-expected", "--with-theory")
+    assert "expected     not drawn: nothing of source 'file' is drawn\n" in told
+    assert f" {FT}, {DMT}: not drawn: asperities.source is 'file', not 'random' or 'surface'\n" in told
 
 
 @pytest.mark.parametrize("path", [{"preload": "1 mN", "unload": True}, {"force": {"stop": "1 mN", "steps": 5}}])
 def test_over_loads_there_is_no_theory(tmp_path: Path, path: dict[str, Any]) -> None:
     rm.run(scene(asperities=SUMMITS, batch=None, path=path), tmp_path / "out.nc")
-    done = roughmdr("plot", str(tmp_path / "out.nc"), "-o", str(tmp_path / "out.png"), "--with-theory")
-    assert done.exit_code == 2
-    assert "need path.separation; this is a path of loads, of a preload or behind a spring" in done.output
+    done = roughmdr("plot", tmp_path / "out.nc", "-o", tmp_path / "out.png", "--with-theory")
+    assert done.returncode == 2
+    assert "need path.separation; this is a path of loads, of a preload or behind a spring" in done.stderr
 
 
 @pytest.mark.parametrize(
@@ -342,7 +334,7 @@ def test_a_result_that_is_not_of_its_scene_is_refused(
 ) -> None:
     changed, picture = tmp_path / "changed.nc", tmp_path / "out.png"
     change(rm.run(scene(batch=None, path=WAY))).to_netcdf(changed)
-    done = roughmdr("plot", str(changed), "-o", str(picture), "--with-expected")
-    assert done.exit_code == 2
-    assert "its separations are not those of the scene in it" in done.output
+    done = roughmdr("plot", changed, "-o", picture, "--with-expected")
+    assert done.returncode == 2
+    assert "its separations are not those of the scene in it" in done.stderr
     assert not picture.exists()

@@ -9,13 +9,12 @@ from typing import Any
 
 import numpy as np
 import pytest
-from click.testing import CliRunner
+from command import said
 from forms import large
 from scenes import ASPERITIES, scene
 from tips import Tip
 
 import roughmdr as rm
-from roughmdr.cli import main
 
 FEW = {**ASPERITIES, "count": 60}
 _VOID = {"meta", "source", "img", "br"}
@@ -46,9 +45,7 @@ class Page(HTMLParser):
 def written(tmp_path: Path, **changes: Any) -> tuple[Page, str]:
     result, page = tmp_path / "out.nc", tmp_path / "report.html"
     rm.run(scene(**{"asperities": FEW, "batch": {"realizations": 3}} | changes), result)
-    done = CliRunner().invoke(main, ["report", str(result), "-o", str(page)])
-    assert done.exit_code == 0, done.output
-    assert done.output == f"report       {page}\n"
+    assert said("report", result, "-o", page) == f"report       {page}\n"
     text = page.read_text("utf-8")
     return Page(text), text
 
@@ -75,11 +72,11 @@ def written(tmp_path: Path, **changes: Any) -> tuple[Page, str]:
 def test_a_page_holds_all_of_it_and_needs_no_other_file(tmp_path: Path, changes: dict[str, Any]) -> None:
     page, text = written(tmp_path, **changes)
     assert page.open == []
-    said = "".join(page.texts)
+    told = "".join(page.texts)
     for part in ("A small scene", "How far to trust it", "What was left out", "roughmdr run out.nc -o again.nc"):
-        assert part in said
+        assert part in told
     for part in ("[material]", "seed 7", "@article{", "rounding" if "estimator" not in str(changes) else "integration"):
-        assert part in said
+        assert part in told
     assert page.images
     for image in page.images:
         kind, _, content = image.partition(",")
@@ -95,16 +92,15 @@ def test_a_fit_has_a_page_too(tmp_path: Path, curves: int) -> None:
     measured = [tip.measure(np.random.default_rng(seed), 30, ("constant", 0.01), 0.0) for seed in range(curves)]
     fit, page = tmp_path / "fit.nc", tmp_path / "fit.html"
     rm.fit(measured[0] if curves == 1 else dict(zip("ab", measured, strict=True)), tip.scene(), free, fit)
-    done = CliRunner().invoke(main, ["report", str(fit), "-o", str(page)])
-    assert done.exit_code == 0, done.output
+    said("report", fit, "-o", page)
     text = page.read_text("utf-8")
     read = Page(text)
     assert read.open == []
     assert len(read.images) == 2
-    said = "".join(read.texts)
+    told = "".join(read.texts)
     for part in ("material.modulus", "95 %", "model error", "[asperities]", "Sneddon", "checksum"):
-        assert part in said
-    assert ("roughmdr run fit.nc -o law.nc" in said) == (curves == 1)
+        assert part in told
+    assert ("roughmdr run fit.nc -o law.nc" in told) == (curves == 1)
     rm.write_report(fit, page)
     assert page.read_text("utf-8") == text
 

@@ -8,10 +8,10 @@ from typing import Any
 import numpy as np
 import pytest
 import tomli_w
-from click.testing import CliRunner
+from batches import write_scene
+from command import roughmdr
 from hypothesis import given, settings, strategies as st
 
-from roughmdr.cli import main
 from roughmdr.ensemble.ensemble import Ensemble
 from roughmdr.ensemble.maps.resolution import radius_uncertainty, verdict
 from roughmdr.ensemble.maps.words import implausible
@@ -32,8 +32,8 @@ def plan(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Any:
             "asperities": {**SURFACE, **asperities},
             "path": {"separation": {"start": "2 sigma", "stop": "1 sigma", "steps": 3}},
         }
-        Path("scene.toml").write_text(tomli_w.dumps(scene))
-        return CliRunner().invoke(main, ["plan", "scene.toml", *more], catch_exceptions=False).stdout
+        write_scene(tmp_path, scene)
+        return roughmdr("plan", "scene.toml", *more).stdout
 
     return plan
 

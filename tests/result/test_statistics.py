@@ -78,12 +78,6 @@ def test_one_realisation_has_no_standard_error() -> None:
     np.testing.assert_array_equal(single.force_mean, kept("curves", batch=None).force[0])
 
 
-def test_the_bits_do_not_depend_on_workers() -> None:
-    table = scene(output={"keep": "statistics"}, asperities={**scene()["asperities"], "count": 3000}, sweep=SWEEP)
-    one, three = rm.run(table, workers=1), rm.run(table, workers=3)
-    assert one.drop_vars("run_time").equals(three.drop_vars("run_time"))
-
-
 PULL_OFF = ("force", "separation", "contacts", "contact_area", "pressure", "contact_fraction")
 
 

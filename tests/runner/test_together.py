@@ -14,7 +14,6 @@ from batches import (
     RUNS,
     STATISTICS,
     Batch,
-    assert_clean,
     assert_no_traceback,
     assert_result,
     lines,
@@ -103,8 +102,7 @@ def test_two_share_the_runs_of_a_batch(
     assert all(count > 0 for count in counts)
     if keep == "curves":
         assert sum(counts) == RUNS
-    assert_result(folder, curves if keep == "curves" else statistics)
-    assert_clean(folder)
+    assert_result(folder, curves if keep == "curves" else statistics, alone=True)
 
 
 @pytest.mark.large
@@ -120,8 +118,7 @@ def test_one_that_is_killed_leaves_the_rest_to_the_other(
             (first if killed == "first" else second).kill()
             other = second if killed == "first" else first
             assert 0 < other.succeed() < RUNS
-    assert_result(folder, curves)
-    assert_clean(folder)
+    assert_result(folder, curves, alone=True)
 
 
 @pytest.mark.large
@@ -135,8 +132,7 @@ def test_three_begun_at_once_and_one_more_later(folder: Path, curves: xr.Dataset
         for batch in batches:
             if batch.process.poll() is None:
                 batch.kill()
-    assert_result(folder, curves)
-    assert_clean(folder)
+    assert_result(folder, curves, alone=True)
 
 
 @pytest.mark.large
@@ -156,14 +152,11 @@ tasks.compute = late
         with running(Batch(folder)) as second:
             until(lambda: "waits for" in second.said_so_far())
             second.process.send_signal(signal.SIGINT)
-            status, said = second.end()
-        assert status == 130
+            said = second.fail(130)
         assert "what is finished is kept in" in said
-        assert_no_traceback(said)
         (folder.parent / "go").touch()
         assert first.succeed() == 8
-    assert_result(folder, curves)
-    assert_clean(folder)
+    assert_result(folder, curves, alone=True)
 
 
 @pytest.mark.large
@@ -176,8 +169,7 @@ def test_rounds_of_an_error_that_is_asked_for_are_filled_together(folder: Path) 
         with running(Batch(folder, code=SLOWLY)) as second:
             second.succeed()
             first.succeed()
-    assert_result(folder, alone)
-    assert_clean(folder)
+    assert_result(folder, alone, alone=True)
 
 
 @pytest.mark.large

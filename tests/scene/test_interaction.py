@@ -11,7 +11,6 @@ from scenes import ASPERITIES, scene
 import roughmdr as rm
 from roughmdr.batch.costs import seconds
 from roughmdr.batch.plan import make_plan
-from roughmdr.batch.resume.keys import keys_of
 from roughmdr.interaction import Interaction
 from roughmdr.scene import read
 from roughmdr.variables import RUN_DIAGNOSTICS
@@ -103,17 +102,6 @@ def test_a_mean_field_goes_with_the_expected_law_and_pairs_with_stratified_draws
     assert read(coupled(MEAN_FIELD, **accuracy)).estimators == ("stratified", "expected")
     assert read(coupled(**accuracy)).estimators == ("stratified",)
     assert read(coupled(batch={"estimator": "stratified"})).needs_positions
-
-
-def test_its_keys_can_be_swept() -> None:
-    swept = read(coupled(sweep={"interaction.error": [1e-6, 1e-4], "interaction.order": [1, 2]}))
-    assert [(cell.interaction.error, cell.interaction.order) for cell in swept.cells if cell.interaction] == [
-        (1e-6, 1), (1e-6, 2), (1e-4, 1), (1e-4, 2)
-    ]  # fmt: skip
-    models = read(scene(adhesion=None, sweep={"interaction.model": ["pairwise", "mean_field"]}))
-    assert [cell.needs_positions for cell in models.cells] == [True, False]
-    keys = keys_of(make_plan(models), "sampled") + keys_of(make_plan(read(scene(adhesion=None))), "sampled")
-    assert len(set(keys)) == 3
 
 
 def test_the_plan_says_what_is_left_out_and_what_a_realisation_costs() -> None:

@@ -14,14 +14,13 @@ from typing import Any
 import jsonschema
 import pytest
 import tomli_w
-from click.testing import CliRunner
+from command import roughmdr, said
 from hypothesis import HealthCheck, given, settings, strategies as st
 from scenes import ASPERITIES, scene
 from studies.random_scenes.scenes import scenes, write_inputs
 from test_mutations import ALL, BASES, FEW_AND_ALL, Mutation
 
-import roughmdr
-from roughmdr.cli import main
+import roughmdr as rm
 from roughmdr.errors import RoughmdrError
 from roughmdr.scene import read
 from roughmdr.scene.json_schema import scene_schema
@@ -29,7 +28,7 @@ from roughmdr.scene.schema_file import FILE_NAME, schema_text
 from roughmdr.schema.units import _BASES, DIMENSIONLESS, _table, quantity, quantity_pattern
 
 ROOT = Path(__file__).parents[2]
-SCENES = [*sorted((ROOT / "pipelines" / "scenes").glob("*.toml")), Path(roughmdr.__file__).parent / "starter.toml"]
+SCENES = [*sorted((ROOT / "pipelines" / "scenes").glob("*.toml")), Path(rm.__file__).parent / "starter.toml"]
 SCHEMA = scene_schema()
 VALIDATOR = jsonschema.Draft202012Validator(SCHEMA)
 TAPLO = Path(sys.executable).with_name("taplo")
@@ -214,12 +213,6 @@ def test_the_pattern_of_a_quantity_is_what_is_read(data: st.DataObject) -> None:
 # The commands, and taplo
 
 
-def called(*arguments: object) -> str:
-    done = CliRunner().invoke(main, list(map(str, arguments)))
-    assert done.exit_code == 0, done.output
-    return done.output
-
-
 def linted(*arguments: object) -> subprocess.CompletedProcess[str]:
     command = [TAPLO, "lint", *map(str, arguments)]
     return subprocess.run(command, capture_output=True, text=True, timeout=60, check=False)
@@ -227,23 +220,22 @@ def linted(*arguments: object) -> subprocess.CompletedProcess[str]:
 
 def test_the_command_prints_and_writes_it(tmp_path: Path) -> None:
     with chdir(tmp_path):
-        assert json.loads(called("schema")) == json.loads(schema_text())
+        assert json.loads(said("schema")) == json.loads(schema_text())
         for _ in range(2):  # a schema gives way to one
-            assert called("schema", "-o", "a.json").split() == ["schema", "a.json"]
+            assert said("schema", "-o", "a.json").split() == ["schema", "a.json"]
         assert Path("a.json").read_text().strip() == schema_text()
         for name, says in (("other.json", "is no schema of scenes"), ("a.toml", "must end in .json")):
             Path(name).write_text("{}")
-            done = CliRunner().invoke(main, ["schema", "-o", name])
-            assert done.exit_code == 2
-            assert says in done.output
+            done = roughmdr("schema", "-o", name)
+            assert (done.returncode, says in done.stderr) == (2, True)
             assert Path(name).read_text() == "{}"
-        called("schema", "-o", "other.json", "--fresh")
+        said("schema", "-o", "other.json", "--fresh")
         assert "properties" in json.loads(Path("other.json").read_text())
 
 
 def test_a_new_scene_names_its_schema_to_editors(tmp_path: Path) -> None:
     with chdir(tmp_path):
-        output = called("new", "a.toml")
+        output = said("new", "a.toml")
         assert f"{FILE_NAME}, by which editors complete and check scenes" in output
         assert Path("a.toml").read_text().startswith("#:schema roughmdr.schema.json\n# A scene")
         assert linted("a.toml").returncode == 0
@@ -252,7 +244,7 @@ def test_a_new_scene_names_its_schema_to_editors(tmp_path: Path) -> None:
         assert done.returncode != 0
         assert '"jrk" is not one of ["jkr","dugdale","auto"]' in done.stderr
         assert read("a.toml").title == "A rough surface"
-        assert "is there already, and is kept\n" in called("new", "c.toml")
+        assert "is there already, and is kept\n" in said("new", "c.toml")
 
 
 @pytest.mark.parametrize("content", ["{}", "no JSON", "[" * 100_000, None, "link"])
@@ -265,7 +257,7 @@ def test_another_file_in_its_place_is_kept(tmp_path: Path, content: str | None) 
             there.symlink_to("nowhere")
         else:
             there.write_text(content)
-        output = called("new", "a.toml")
+        output = said("new", "a.toml")
         assert "is kept; it is not that of this version" in output
         assert "roughmdr schema -o" in output
         assert Path("a.toml").exists()
@@ -286,6 +278,6 @@ def test_taplo_finds_all_scenes_valid_and_wrong_ones_not(tmp_path: Path) -> None
     wrong = [tmp_path / f"wrong_{number}.toml" for number in range(len(some))]
     for path, mutation in zip(wrong, some, strict=True):
         path.write_text(tomli_w.dumps(mutation.table))
-    said = linted("--schema", schema.as_uri(), *wrong).stderr
+    told_of = linted("--schema", schema.as_uri(), *wrong).stderr
     for path, mutation in zip(wrong, some, strict=True):
-        assert f"{path.name}:" in said, str(mutation)
+        assert f"{path.name}:" in told_of, str(mutation)

@@ -14,6 +14,7 @@ import xarray as xr
 from click.testing import CliRunner
 from forms import large
 from hypothesis import given, settings, strategies as st
+from kinds import KINDS
 from pydantic import BaseModel
 from scenes import ASPERITIES, CONDUCTION, SCENE
 
@@ -27,13 +28,12 @@ from roughmdr.scene.scene import Scene
 from roughmdr.schema.faults import sections_of
 
 _DRAWN = {key: value for key, value in ASPERITIES.items() if key != "radius"}
-_WAVES = {"shape": "paraboloid", "hurst": 0.8, "long_wave": "50 um", "short_wave": "5 um"}
 _PLACES = {"at_pressure": "10 kPa", "at_force": "1 mN", "at_separation": "1 sigma"}
 ASKED = {
     name: list(_PLACES.items())[(2 if name in ("force", "pressure") else number % 2)]
     for number, name in enumerate(name for name in Asked.model_fields if name not in _PLACES)
 }
-BASES: dict[str, dict[str, Any]] = {
+BASES: dict[str, dict[str, Any]] = KINDS | {
     "every section": {
         **SCENE,
         "counter": {"modulus": "70 GPa", "poisson": 0.2},
@@ -41,24 +41,6 @@ BASES: dict[str, dict[str, Any]] = {
         "asperities": {**ASPERITIES, "placement": "hard_core", "min_distance": "1 um"},
         "output": {"variables": ["force", "energy"], "keep": "statistics"},
         "sweep": {"mode": "zip", "adhesion.work": ["1 mJ/m^2", "2 mJ/m^2"]},
-    },
-    "pairs": {
-        **{key: value for key, value in SCENE.items() if key != "adhesion"},
-        "interaction": {
-            "model": "pairwise",
-            "boundary": "periodic",
-            "order": 1,
-            "error": 1e-5,
-            "beyond": "boundary_elements",
-        },
-        "path": {"separation": {"start": "3 sigma", "stop": "0.5 sigma", "steps": 10}, "unload": True},
-    },
-    "a reference": {
-        **{key: value for key, value in SCENE.items() if key != "adhesion"},
-        "asperities": {**ASPERITIES, "count": 50, "patch": "0.3 mm"},
-        "reference": {"model": "boundary_elements", "error": 0.5},
-        "path": {"separation": ["1 sigma", "0.5 sigma"]},
-        "batch": {},
     },
     "cones": {
         **SCENE,
@@ -75,86 +57,29 @@ BASES: dict[str, dict[str, Any]] = {
         }
         for name, (place, given) in ASKED.items()
     },
-    "populations": {
-        **SCENE,
-        "asperities": {
-            **{key: value for key, value in ASPERITIES.items() if key != "count"},
-            "density": "50 /mm^2",
-            "second": {"share": 0.2, "height": ASPERITIES["height"], "radius": ASPERITIES["radius"]},
-            "correlation": {"radius": -0.3},
-        },
-        "batch": {"estimator": "stratified"},
-    },
-    "a lattice": {
-        **SCENE,
-        "asperities": {
-            **{key: value for key, value in ASPERITIES.items() if key != "count"},
-            "placement": "hexagonal",
-            "pitch": "30 um",
-        },
-    },
     "vacancies": {**SCENE, "asperities": {**ASPERITIES, "placement": "hexagonal", "vacancies": True}},
-    "moments": {**SCENE, "asperities": {"source": "nayak", "patch": "0.2 mm", "m0": "1 um^2", "m2": 0.02, "m4": 5e9}},
     **{
-        name: {**SCENE, "asperities": {"source": "nayak", "patch": "0.2 mm", **_WAVES, name: amplitude}}
-        for name, amplitude in (("rms_height", "0.5 um"), ("rms_slope", 0.1))
-    },
-    **{
-        f"a spectrum by its {name}": {
-            **SCENE,
-            "asperities": {
-                "source": "spectrum",
-                "model": "summits",
-                "patch": "0.2 mm",
-                **_WAVES,
-                "short_wave": "10 um",
-                name: amplitude,
-                "anisotropy": 2.0,
-                "points": 5.0,
-            },
-            "batch": {},
+        f"{shape}: {', '.join(parameters)}": {
+            **SCENE, "asperities": {**_DRAWN, "count": 20, "shape": shape, **parameters}, "batch": {}
         }
-        for name, amplitude in (("rms_height", "0.5 um"), ("rms_slope", 0.1))
-    },
-    "yielding": {**SCENE, "plasticity": {"yield_strength": "1 MPa", "model": "mdr", "body": "sphere"}},
-    "yielding by hardness": {**SCENE, "plasticity": {"hardness": "1 MPa"}},
-    "yielding cones": {
-        **{key: value for key, value in SCENE.items() if key != "adhesion"},
-        "material": {"modulus": "3 MPa", "poisson": 0.49},
-        "asperities": {**_DRAWN, "count": 20, "shape": "cone", "slope": 0.1},
-        "plasticity": {"yield_strength": "1 kPa"},
+        for shape, parameters in (
+            ("power_law", {"exponent": 2.5, "width": "10 um", "rise": "1 um"}),
+            ("power_law", {"exponent": 2.5, "coefficient": 1e7}),
+            ("flat_punch", {"radius": "2 um"}),
+            ("sphere", {"radius": "50 um"}),
+            ("truncated_cone", {"slope": 0.1, "flat_radius": "2 um"}),
+            ("truncated_paraboloid", {"radius": "50 um", "flat_radius": "2 um"}),
+            ("rounded_cone", {"slope": 0.1, "blend_radius": "2 um"}),
+            ("capped_paraboloid", {"radius": "50 um", "cap_radius": "80 um", "blend_radius": "2 um"}),
+            ("rounded_punch", {"flat_radius": "2 um", "edge_radius": "50 um"}),
+            ("power_series", {"terms": {"2": 1e4, "4": 1e14}}),
+            ("tabulated", {"r": [0, "1 um", "3 um"], "f": [0, "10 nm", "100 nm"]}),
+        )
     },
     "yielding punches": {
         **SCENE,
         "asperities": {**_DRAWN, "count": 20, "shape": "flat_punch", "radius": "2 um"},
         "plasticity": {"hardness": "1 MPa"},
-    },
-    "adhesion by its strength": {
-        **SCENE,
-        "adhesion": {**SCENE["adhesion"], "model": "auto", "strength": 1e7, "error": 0.1},
-    },
-    "adhesion by its range": {**SCENE, "adhesion": {**SCENE["adhesion"], "model": "dugdale", "range": "1 nm"}},
-    "power laws": {
-        **SCENE,
-        "asperities": {**_DRAWN, "shape": "power_law", "exponent": 2.5, "width": "10 um", "rise": "1 um"},
-    },
-    "power laws with coefficient": {
-        **SCENE,
-        "asperities": {**_DRAWN, "shape": "power_law", "exponent": 2.5, "coefficient": 1e7},
-    },
-    **{
-        shape: {**SCENE, "asperities": {**_DRAWN, "count": 20, "shape": shape, **parameters}, "batch": {}}
-        for shape, parameters in {
-            "flat_punch": {"radius": "2 um"},
-            "sphere": {"radius": "50 um"},
-            "truncated_cone": {"slope": 0.1, "flat_radius": "2 um"},
-            "truncated_paraboloid": {"radius": "50 um", "flat_radius": "2 um"},
-            "rounded_cone": {"slope": 0.1, "blend_radius": "2 um"},
-            "capped_paraboloid": {"radius": "50 um", "cap_radius": "80 um", "blend_radius": "2 um"},
-            "rounded_punch": {"flat_radius": "2 um", "edge_radius": "50 um"},
-            "power_series": {"terms": {"2": 1e4, "4": 1e14}},
-            "tabulated": {"r": [0, "1 um", "3 um"], "f": [0, "10 nm", "100 nm"]},
-        }.items()
     },
     "a surface": {
         **SCENE,
@@ -164,34 +89,14 @@ BASES: dict[str, dict[str, Any]] = {
     "a surface of plain numbers": {
         **SCENE,
         "asperities": {
-            "source": "surface",
-            "file": "map.npz",
-            "size": ["10 um", "10 um"],
-            "unit": "nm",
-            "channel": "height",
-            "outliers": "undefined",
-            "detrend": "plane",
-            "periodic": False,
-            "cutoff": "1 um",
+            "source": "surface", "file": "map.npz", "size": ["10 um", "10 um"], "unit": "nm", "channel": "height",
+            "outliers": "undefined", "detrend": "plane", "periodic": False, "cutoff": "1 um",
         },
         "batch": {},
     },
-    **{
-        f"until {target}": {
-            **SCENE,
-            "path": {"separation": {"start": "clear", "stop": {target: value}, "steps": 9}, "unload": True},
-        }
-        for target, value in (("contact_fraction", 0.02), ("pressure", "1 kPa"))
-    },
-    "a load": {**SCENE, "path": {"force": {"start": "0 N", "stop": "1 uN", "steps": 9}, "unload": True, "hold": 2}},
-    "a pressure": {**SCENE, "path": {"pressure": {"start": "0 Pa", "stop": "1 Pa", "steps": 9}, "unload": False}},
-    "a spring": {
+    "a load held": {
         **SCENE,
-        "path": {
-            "remote": {"start": "3 sigma", "stop": "0.5 sigma", "steps": 9},
-            "machine_stiffness": "1 kN/m",
-            "unload": True,
-        },
+        "path": {"force": {"start": "0 N", "stop": "1 uN", "steps": 9}, "unload": True, "hold": 2},
     },
     **{
         f"a body: {', '.join(body)}": {
@@ -204,48 +109,21 @@ BASES: dict[str, dict[str, Any]] = {
         }
         for body in (
             {"radius": "10 mm"},
-            {"shape": "cone", "slope": 1e-3},
             {"shape": "capped_paraboloid", "radius": "5 mm", "cap_radius": "10 mm", "blend_radius": "0.1 mm"},
             {"shape": "rounded_punch", "flat_radius": "0.2 mm", "edge_radius": "10 mm"},
             {"shape": "power_law", "exponent": 3.0, "width": "1 mm", "rise": "50 um"},
             {"shape": "power_law", "exponent": 3.0, "coefficient": 5e4},
         )
     },
-    "relaxation": {
+    "lateral cycles": {
         **{key: value for key, value in SCENE.items() if key != "adhesion"},
-        "viscoelastic": {
-            "relaxation": [{"time": "10 ms", "share": 0.5}],
-            "speed": "1 um/s",
-            "retraction_speed": "2 um/s",
-            "dwell": "1 s",
-        },
+        "material": {"effective_modulus": "4 MPa"},
+        "tangential": {"friction": 0.3, "stiffness_ratio": 0.8},
+        "path": {"separation": "1 sigma", "lateral": {"amplitude": "5 nm", "cycles": 2, "steps": 9}},
     },
-    "a preload": {**SCENE, "path": {"preload": "1 uN", "machine_stiffness": "1 kN/m", "steps": 9, "unload": True}},
-    **{
-        f"a preload by {quantity}": {**SCENE, "path": {f"preload_{quantity}": value, "steps": 9, "unload": True}}
-        for quantity, value in (("pressure", "1 Pa"), ("contact_fraction", 0.01))
-    },
-    **{
-        f"a lateral path with {kind}": {
-            **{key: value for key, value in SCENE.items() if key != "adhesion"},
-            **constants,
-            "path": {"separation": "1 sigma", "lateral": {**lateral, "steps": 9}},
-        }
-        for kind, lateral, constants in (
-            ("an end", {"start": "0 nm", "stop": "-5 nm"}, {"tangential": {"friction": 0.3}}),
-            (
-                "cycles",
-                {"amplitude": "5 nm", "cycles": 2},
-                {
-                    "material": {"effective_modulus": "4 MPa"},
-                    "tangential": {"friction": 0.3, "stiffness_ratio": 0.8},
-                },
-            ),
-        )
-    },
-}
+}  # fmt: skip
 HELD = ("separation", "force", "pressure")  # whose single values need path.lateral, which no schema tells
-MAY_BE_NEGATIVE = ("poisson", "start", "stop", "mean", "height", "at_separation", *HELD)
+MAY_BE_NEGATIVE = ("poisson", "start", "stop", "mean", "min", "max", "loc", "height", "at_separation", *HELD)
 NONSENSE: dict[str, object] = {
     "unit": "3 parsec",
     "no number": "three",
@@ -306,7 +184,9 @@ def misspelt(base: str, key: str) -> Mutation:
 def mutations() -> Iterator[Mutation]:
     for base, table in BASES.items():
         for key in paths(table):
-            if not key.startswith("asperities.terms."):
+            value = value_of(table, key)
+            has_line = not isinstance(value, dict) or any(not isinstance(each, dict) for each in value.values())
+            if has_line and not key.startswith("asperities.terms."):
                 yield misspelt(base, key)
         for key, reader in key_readers([Scene], table):
             if value_of(table, key) == {}:
@@ -333,7 +213,7 @@ def mutations() -> Iterator[Mutation]:
 
 
 ALL = list(mutations())
-FEW = ("every section", "pairs", "cones", "populations", "a surface", "a load", "a preload", "relaxation")
+FEW = ("every section", "pairwise", "cones", "independent", "a surface", "a load held", "preload", "viscoelastic")
 FEW_AND_ALL = [base if base in FEW else large(base) for base in BASES]
 """Kinds of scenes, of which the first few have nearly every key."""
 
@@ -415,6 +295,13 @@ def test_one_thing_wrong_is_refused_at_its_line(folder: Path, base: str) -> None
         output = refused(folder, text)
         lines = [line for line in output.splitlines() if f"scene.toml:{line_of(text, mutation.key)}: " in line]
         assert any(mutation.key in line for line in lines), (str(mutation), output)
+
+
+def test_one_thing_wrong_is_refused_at_its_key(folder: Path) -> None:
+    for mutation in [each for each in ALL if each.base == "every section"]:
+        with contextlib.chdir(folder), pytest.raises(SceneError) as refused:
+            read(mutation.table)
+        assert any(mutation.key in str(fault) for fault in refused.value.faults), str(mutation)
 
 
 SPELLINGS: dict[str, Callable[[str], str]] = {

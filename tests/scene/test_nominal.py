@@ -93,20 +93,6 @@ def test_a_run_holds_the_law_of_the_body(tmp_path: Path) -> None:
     np.testing.assert_array_equal(again.force, result.force)
 
 
-@pytest.mark.large
-def test_a_sweep_of_radii_is_the_same_for_any_number_of_workers() -> None:
-    table = curved(
-        adhesion={"model": "jkr", "work": "1 mJ/m^2"},
-        sweep={"nominal.radius": ["1 mm", "10 mm"]},
-        output={"keep": "statistics"},
-    )
-    one, two = (rm.run(table, workers=workers) for workers in (1, 2))
-    assert one.sizes["nominal_radius"] == 2
-    np.testing.assert_array_equal(one.force_mean, two.force_mean)
-    assert (one.force_mean[1, 4] > one.force_mean[0, 4]).all()
-    assert (one.pull_off_force_mean <= 0.0).all()
-
-
 def test_accuracy_takes_the_expected_law() -> None:
     result = rm.run(curved(batch=None, accuracy={"relative": 1e-3}))
     assert result.accuracy_method.item() == 2
@@ -124,12 +110,6 @@ def test_a_clear_start_is_clear_of_the_half_space_too() -> None:
         Paraboloid(radius=0.01), effective_modulus=3e6 / (1 - 0.49**2), work=0.05, control="displacement"
     )
     assert here - flat == pytest.approx(-drawn_up.indentation.item(), rel=1e-6)
-
-
-def test_what_decides_its_numbers_is_in_the_key_of_its_cell() -> None:
-    bodies = [{"radius": "10 mm"}, {"radius": "11 mm"}, {"radius": "10 mm", "error": 1e-3}, None]
-    keys = {str(rm.run(curved(nominal=body)).cell_key.item()) for body in bodies}
-    assert len(keys) == 4
 
 
 def test_a_scene_without_it_says_so() -> None:

@@ -12,8 +12,6 @@ from scenes import ASPERITIES, scene
 
 import roughmdr as rm
 from roughmdr.batch.plan import make_plan
-from roughmdr.runner.backend import Backend
-from roughmdr.runner.run import execute
 from roughmdr.scene import read
 from roughmdr.scene.keys import set_key
 
@@ -41,32 +39,23 @@ def assert_cell(cell: xr.Dataset, alone: xr.Dataset) -> None:
     assert cell.branch.to_numpy().tolist() == alone.branch.to_numpy().tolist()
 
 
-@pytest.mark.few(5)
+@pytest.mark.few(3)
 @pytest.mark.parametrize(
     ("key", "values", "unit"),
     [
-        ("material.modulus", ["3 MPa", 5e6], "Pa"),
         ("material.poisson", [0.2, 0.49], "1"),
         ("adhesion.work", [0, "50 mJ/m^2"], "J m-2"),
-        ("asperities.count", [10, 60], "1"),
-        ("asperities.patch", ["1 mm", "2 mm"], "m"),
-        ("asperities.radius.mean", ["50 um", "70 um"], "m"),
         ("asperities.radius", ["50 um", "70 um"], "m"),
-        ("asperities.height.mean", ["0 um", "1 um"], "m"),
         ("asperities.height.distribution", ["normal", "uniform"], None),
         ("path.separation.start", ["2 um", "3 um"], "m"),
-        ("path.separation.start", ["2 sigma", "3 sigma"], "1"),
         ("path.separation.stop", ["-0.5 sigma", "0 sigma"], "1"),
     ],
 )
-def test_any_number_or_name_can_be_swept(key: str, values: list[Any], unit: str | None) -> None:
-    table = swept({key: values})
-    result, name = rm.run(table), key.replace(".", "_")
+def test_a_swept_key_is_a_coordinate_in_its_unit(key: str, values: list[Any], unit: str | None) -> None:
+    result, name = rm.run(swept({key: values})), key.replace(".", "_")
     assert result.sizes[name] == 2
     assert result[name].attrs.get("units") == unit
-    assert ("path" in key or "height.mean" in key) or result.separation.dims == ("step",)
-    for i, value in enumerate(values):
-        assert_cell(result.isel({name: i}), single(table, {key: value}))
+    assert "path" in key or result.separation.dims == ("step",)
 
 
 @pytest.mark.large
@@ -89,18 +78,6 @@ def test_cells_share_their_draws() -> None:
     table = swept({"asperities.height.std": ["1 um", "2 um"]}, adhesion=None, output={"variables": ["contact_count"]})
     result = rm.run(table)
     np.testing.assert_array_equal(result.contact_count[0], result.contact_count[1])
-
-
-@pytest.mark.few(1)
-@pytest.mark.parametrize("runs_per_task", [1, 4, 5, 12])
-@pytest.mark.parametrize("workers", [1, 3])
-def test_bits_do_not_depend_on_how_cells_are_split_into_tasks(runs_per_task: int, workers: int) -> None:
-    plan = make_plan(read(swept({"adhesion.work": [0.0, 0.01, 0.02, 0.05]})))
-    base, other = (
-        execute(plan, None, Backend(workers=workers, runs_per_task=count)).to_xarray()
-        for count in (None, runs_per_task)
-    )
-    assert base.drop_vars("run_time").equals(other.drop_vars("run_time"))
 
 
 def test_a_product_stands_in_order_and_a_falling_one_falls() -> None:

@@ -1,7 +1,6 @@
 """Conductances of a rough layer: from the conductance radius, in scenes, batches and beside the reference."""
 
 import math
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -72,24 +71,6 @@ def test_what_is_asked_for_besides_changes_no_bit() -> None:
     more = rm.run(scene(**PAIRS, conduction=CONDUCTION, output={"variables": [*asked, *NAMES]}))
     for name in asked:
         np.testing.assert_array_equal(more[name], plain[name])
-
-
-def test_any_number_of_workers_gives_the_same(tmp_path: Path) -> None:
-    table = conducting(batch={"realizations": 6}, output={"variables": ["thermal_conductance"]})
-    one, two = (rm.run(table, tmp_path / f"{n}.nc", workers=n, resume=False) for n in (1, 2))
-    np.testing.assert_array_equal(one.thermal_conductance, two.thermal_conductance)
-
-
-def test_conductivities_are_swept(tmp_path: Path) -> None:
-    sweep = {"conduction.conductivity": ["100 W/m/K", "200 W/m/K"]}
-    result = rm.run(conducting(batch=None, sweep=sweep), tmp_path / "out.nc")
-    np.testing.assert_allclose(result.thermal_conductance[1], 2.0 * result.thermal_conductance[0], rtol=1e-14)
-    np.testing.assert_array_equal(result.conductance_radius[1], result.conductance_radius[0])
-    other = conducting(batch=None, sweep={"conduction.conductivity": ["300 W/m/K", "100 W/m/K", "200 W/m/K"]})
-    again = rm.run(other, tmp_path / "out.nc")  # of which two cells are in the file
-    np.testing.assert_allclose(
-        again.thermal_conductance.sel(conduction_conductivity=300.0), 3.0 * result.thermal_conductance[0], rtol=1e-14
-    )
 
 
 def test_statistics_are_those_of_the_curves() -> None:

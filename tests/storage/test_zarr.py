@@ -1,18 +1,14 @@
 """Zarr stores: the numbers of the netCDF file, read by xarray and every command, whole or not there."""
 
 import json
-import subprocess
 import sys
-import time
 import tracemalloc
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
-import tomli_w
 import xarray as xr
-from batches import slow_scene
 from click.testing import CliRunner
 from forms import large
 from hypothesis import given, settings, strategies as st
@@ -310,19 +306,3 @@ def test_without_space_on_the_disk_curves_stay_in_memory(tmp_path: Path, monkeyp
     monkeypatch.setattr("roughmdr.storage.memory.available_memory", lambda: (10.0, "the 10 B of this machine"))
     with pytest.raises(rm.StoreError, match=r"takes about .* of memory, with 10 B left"):
         read_result(tmp_path / "out.nc")
-
-
-@pytest.mark.large
-def test_killed_at_any_moment_it_comes_to_the_same_bits(tmp_path: Path) -> None:
-    table = slow_scene(runs=48)
-    (tmp_path / "scene.toml").write_text(tomli_w.dumps(table))
-    command = [sys.executable, "-m", "roughmdr", "run", "scene.toml", "-o", "out.zarr", "--quiet"]
-    rng = np.random.default_rng(3)
-    for _ in range(6):
-        running = subprocess.Popen(command, cwd=tmp_path)
-        time.sleep(rng.uniform(1.0, 4.0))
-        running.kill()
-        running.wait()
-    subprocess.run(command, cwd=tmp_path, check=True)
-    np.testing.assert_array_equal(read_result(tmp_path / "out.zarr").variables["force"].values, rm.run(table).force)
-    assert {path.name for path in tmp_path.iterdir()} == {"scene.toml", "out.zarr"}
