@@ -12,9 +12,8 @@ from roughmdr.ensemble import Source
 from roughmdr.ensemble.nodes import Heights, Nodes, Rule
 from roughmdr.expected.curve import Curve, curves_of, curves_to_touch, quantities_of, scales_of
 from roughmdr.expected.heights import HeightTable
-from roughmdr.expected.integral import integrate
+from roughmdr.expected.integral import MeanContact, integrate
 from roughmdr.expected.intervals import Intervals, contact_intervals, has_branches, jump_energies
-from roughmdr.expected.mean_contact import MeanContact
 from roughmdr.kernels.adhesion import Adhesion
 from roughmdr.kernels.interface import Kernels
 from roughmdr.numerics.arguments import Floats

@@ -6,8 +6,7 @@ import threading
 from collections.abc import Iterator, Sequence
 
 from roughmdr.batch.plan import Plan
-from roughmdr.batch.resume.find import find_previous, is_finished
-from roughmdr.batch.resume.reusable import ReusableRows
+from roughmdr.batch.resume.find import ReusableRows, find_previous, is_finished
 from roughmdr.batch.resume.store import CheckpointStore
 from roughmdr.batch.resume.writer import CheckpointWriter
 from roughmdr.batch.tasks import Task

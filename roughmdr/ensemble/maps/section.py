@@ -11,11 +11,10 @@ from roughmdr.ensemble.ensemble import Ensemble
 from roughmdr.ensemble.from_file import FromFile
 from roughmdr.ensemble.maps.detrend import Trend, remove_short_waves, remove_trend
 from roughmdr.ensemble.maps.found import MapSource, Model, asperities_on, summits_on
-from roughmdr.ensemble.maps.height_map import HeightMap, mean_and_rms
+from roughmdr.ensemble.maps.height_map import HeightMap, MapWaves, mean_and_rms
 from roughmdr.ensemble.maps.outliers import Treatment
 from roughmdr.ensemble.maps.raw_map import Size, SizeReader
 from roughmdr.ensemble.maps.read_map import read_map
-from roughmdr.ensemble.maps.waves import MapWaves
 from roughmdr.ensemble.maps.words import describe_map
 from roughmdr.errors import RoughmdrError, SceneError
 from roughmdr.schema.section import Length
