@@ -19,7 +19,7 @@ import roughmdr as rm
 from roughmdr.cli import main
 from roughmdr.elements.half_space import BoundaryElements
 from roughmdr.ensemble.maps.height_map import HeightMap, slope_ratio
-from roughmdr.ensemble.maps.hills.ellipse import area_share, complete_elliptic
+from roughmdr.ensemble.maps.hills.contact import area_share, complete_elliptic
 from roughmdr.ensemble.maps.hills.find import fill_table, find_hills, points_of
 from roughmdr.ensemble.maps.resolution import HILLS_BY_BORDER
 from roughmdr.ensemble.maps.summits import find_summits

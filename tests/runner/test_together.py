@@ -34,11 +34,11 @@ from roughmdr.batch.resume.keys import versions
 from roughmdr.batch.resume.locks import claims_in, give_up
 from roughmdr.batch.resume.manifest import MANIFEST, Runs
 from roughmdr.batch.resume.store import CheckpointStore
+from roughmdr.batch.resume.writer import Together
 from roughmdr.batch.task_result import TaskResult, not_run
 from roughmdr.batch.tasks import RunRange, Task, compute, split_into_tasks
 from roughmdr.errors import StoreError
 from roughmdr.runner.batch import begun
-from roughmdr.runner.together import Together
 from roughmdr.scene import read
 from roughmdr.storage.result_file import read_result
 

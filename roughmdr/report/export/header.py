@@ -9,10 +9,10 @@ import numpy as np
 from roughmdr.numerics.arguments import Floats
 from roughmdr.report.contacts import conduction_lines, contact_pressure_lines
 from roughmdr.report.export.law import Law, Quantity
+from roughmdr.report.export.part import whole_lines
 from roughmdr.report.export.table import RELATIVE_FROM, Table
 from roughmdr.report.export.text import rounded_up
 from roughmdr.report.export.units import UnitSystem
-from roughmdr.report.export.whole import whole_lines
 from roughmdr.result.between import CONFIDENCE
 from roughmdr.result.model_errors import error_of_mean
 from roughmdr.result.trust import trust_of_result

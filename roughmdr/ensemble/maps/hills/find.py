@@ -15,8 +15,18 @@ from roughmdr.ensemble.maps.height_map import (
     slope_ratio,
     spline_coefficients,
 )
-from roughmdr.ensemble.maps.hills.ellipse import PARAMETERS, area_share, improve
-from roughmdr.ensemble.maps.hills.territory import RAYS, STEPS, Spline, Territory, explore, raw_height, top_of
+from roughmdr.ensemble.maps.hills.contact import (
+    PARAMETERS,
+    RAYS,
+    STEPS,
+    Spline,
+    Territory,
+    area_share,
+    explore,
+    improve,
+    raw_height,
+    top_of,
+)
 from roughmdr.ensemble.maps.resolution import HILLS_BY_BORDER, border_error, hills_error
 from roughmdr.ensemble.maps.summits import NEIGHBOURS
 from roughmdr.errors import SceneError
