@@ -48,7 +48,7 @@ class AccuracyTable(TypedDict):
 
 
 class ErrorsTable(TypedDict):
-    """What is known of a cell, or foreseen, with the errors of its model."""
+    """Errors of a cell, computed or foreseen: those of the model, and the scatter from patch to patch."""
 
     swept: dict[str, float | str]  # swept key, dots as underscores: value in SI, or name
     model_error: float
@@ -82,7 +82,7 @@ class CoordinateTable(TypedDict):
 
 
 class BatchTable(TypedDict):
-    """What a result and a plan have in common."""
+    """Keys that a result and a plan have in common."""
 
     title: str
     sizes: dict[str, int]  # swept dimensions, in their order

@@ -11,8 +11,8 @@ from pydantic import ValidationInfo, field_validator, model_validator
 
 from roughmdr.ensemble.ensemble import Ensemble
 from roughmdr.ensemble.gaussian.summit_distribution import SummitDistribution
-from roughmdr.ensemble.maps.found import MapSource, Model, asperities_on
 from roughmdr.ensemble.maps.height_map import HeightMap
+from roughmdr.ensemble.maps.section import MapSource, Model, asperities_on
 from roughmdr.ensemble.random.distribution_families import ndtri
 from roughmdr.ensemble.source import Patch
 from roughmdr.ensemble.streams import WAVES, make_streams
