@@ -2,7 +2,6 @@
 
 import math
 from collections.abc import Callable, Iterator
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -22,22 +21,18 @@ from roughmdr.schema.units import format_quantity
 from roughmdr.schema.wording import format_bytes, format_seconds, format_table, printable, under
 from roughmdr.variables import LATERAL, SAMPLE, YIELDED, YIELDING
 
-if TYPE_CHECKING:
-    from roughmdr.batch.foresee import Foreseen, Prospect
-    from roughmdr.batch.plan import Plan
-
 _ROUNDING = 1e-9  # difference of pressures, over the largest, that is rounding
 _HARDEST = 1e11  # hardness of diamond [Pa]; no mean pressure of a contact is larger
 
 
-def prospect_lines(prospect: "Prospect") -> Iterator[tuple[str, str]]:
+def prospect_lines(prospect: Prospect) -> Iterator[tuple[str, str]]:
     """Yield the lines of the cells that were foreseen; only that nothing is known where none could be."""
     cells = prospect.foreseen
     if not cells:
         yield "trust", "not known: no cell that was tried can be computed"
         return
 
-    def over_cells(unit: str, value: "Callable[[Foreseen], float]") -> str:
+    def over_cells(unit: str, value: Callable[[Foreseen], float]) -> str:
         values = [value(cell) for cell in cells]
         return format_quantity(min(values), unit, to=max(values))
 
@@ -82,23 +77,22 @@ def prospect_lines(prospect: "Prospect") -> Iterator[tuple[str, str]]:
         how = 'with [interaction] model = "pairwise" it would be found ' if parts else ""
         yield "", f"{how}at about {format_quantity(prospect.coupled_seconds, 's')} a realisation on one core"
     of_cells = [cell.law.yielding() for cell in cells]
-    names_of_yielding = (*YIELDING, *YIELDED)
-    yield from hardness_lines({name: [each.get(name, math.nan) for each in of_cells] for name in names_of_yielding})
+    yield from hardness_lines({name: [each.get(name, math.nan) for each in of_cells] for name in (*YIELDING, *YIELDED)})
 
 
-def pressure_at_closest(cell: "Foreseen") -> float:
+def pressure_at_closest(cell: Foreseen) -> float:
     """Return the pressure of a cell with a nominal area at its closest approach [Pa]; NaN without an equilibrium."""
     return float(cell.law.variables["pressure"][np.argmin(cell.path.separation)])
 
 
-def largest_tension(cell: "Foreseen") -> float:
+def largest_tension(cell: Foreseen) -> float:
     """Return the largest tension of a cell with a nominal area [Pa]; 0 for none, or for what is but rounding."""
     pressure = cell.law.variables["pressure"]
     tension = -float(np.nanmin(pressure, initial=0.0))
     return tension if tension > _ROUNDING * float(np.nanmax(pressure, initial=0.0)) else 0.0
 
 
-def implausible_lines(plan: "Plan", prospect: "Prospect") -> list[str]:
+def implausible_lines(plan: Plan, prospect: Prospect) -> list[str]:
     """Return what is implausible of the maps of a plan, and of the mean pressure in its contacts."""
     lines = [text for text in plan.map_lines if IMPLAUSIBLE in text]
     for cell in prospect.foreseen:
@@ -110,7 +104,7 @@ def implausible_lines(plan: "Plan", prospect: "Prospect") -> list[str]:
     return lines
 
 
-def _mean_in_contacts(cell: "Foreseen") -> float:
+def _mean_in_contacts(cell: Foreseen) -> float:
     """Return the mean pressure in the contacts at closest approach [Pa]; 0 where it is not known."""
     variables = cell.law.variables
     if not {"pressure", "contact_fraction"} <= variables.keys():
