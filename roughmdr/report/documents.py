@@ -47,10 +47,14 @@ class AccuracyTable(TypedDict):
     method: str  # "sampled", "stratified" or "expected"
 
 
-class ErrorsTable(TypedDict):
-    """Errors of a cell, computed or foreseen: those of the model, and the scatter from patch to patch."""
+class CellTable(TypedDict):
+    """One cell of a sweep; the only one without a sweep. Errors are the largest of its realisations."""
 
     swept: dict[str, float | str]  # swept key, dots as underscores: value in SI, or name
+    realizations: int
+    status: dict[str, int]  # "done", "failed", "not_run": number of runs, or 1 where only statistics are kept
+    remark: str  # why a run failed, or is doubtful
+    pull_off: PullOffTable | None
     model_error: float
     parts: dict[str, float]  # of the model error, by their names in results
     at_given_pressure: dict[str, float]  # largest model errors of other variables there; none if contacts yield
@@ -60,15 +64,6 @@ class ErrorsTable(TypedDict):
     area_sampling_error: float  # scatter of the contact area at the same force
     trusted_separation: float  # [m]
     yielding: dict[str, float]  # diagnostics of contacts above the hardness, by their names in results
-
-
-class CellTable(ErrorsTable):
-    """One cell of a sweep; the only one without a sweep. Errors are the largest of its realisations."""
-
-    realizations: int
-    status: dict[str, int]  # "done", "failed", "not_run": number of runs, or 1 where only statistics are kept
-    remark: str  # why a run failed, or is doubtful
-    pull_off: PullOffTable | None
     numerical_error: float
     run_time: float  # [s], of all realisations
     accuracy: AccuracyTable | None
@@ -81,35 +76,30 @@ class CoordinateTable(TypedDict):
     values: list[float] | list[str]
 
 
-class BatchTable(TypedDict):
-    """Keys that a result and a plan have in common."""
+class ResultTable(TypedDict):
+    """A result, as ``run`` wrote it and ``info`` finds it."""
 
     title: str
+    file: str | None
+    file_size: int | None  # bytes
     sizes: dict[str, int]  # swept dimensions, in their order
     coordinates: dict[str, CoordinateTable]  # swept keys; with mode "zip" all over the dimension cell
-    realizations: int  # of a cell, at most; of a plan in the first round
+    realizations: int  # of a cell, at most
     steps: int
     control: str  # the quantity that the path controls
     variables: list[str]
+    cells: list[CellTable]
     path: list[str]  # which separations "clear" and targets came to
     lattice: list[str]  # that the asperities fill, with its pitch and patch
     map: list[str]
     trust: dict[str, str | None]  # by the names of ``_TRUST``: in words
     sample: str | None  # how far one stands for others
     advice: str | None
-    warnings: list[str]
-    left_out: list[str]
-
-
-class ResultTable(BatchTable):
-    """A result, as ``run`` wrote it and ``info`` finds it."""
-
-    file: str | None
-    file_size: int | None  # bytes
-    cells: list[CellTable]
     reference: str | None  # other sections that tell something of a result have a key of their own
     accuracy: str | None
     failed: str | None
+    warnings: list[str]
+    left_out: list[str]
     run_time: float  # [s], of all realisations
     elapsed: float | None  # [s], of the command that ran it
     seed: int
@@ -118,23 +108,40 @@ class ResultTable(BatchTable):
     scene: str  # TOML
 
 
-class ForeseenTable(ErrorsTable):
+class ForeseenTable(TypedDict):
     """A cell as a few asperities foretell it."""
 
+    swept: dict[str, float | str]
     start: float  # separations [m]
     closest: float
     end: float
     pressure: float  # at closest approach [Pa]
     tension: float  # the largest [Pa]
+    yielding: dict[str, float]  # diagnostics of contacts above the hardness, by their names in results
     tabor_number: float
     adhesion: str
+    model_error: float
+    parts: dict[str, float]
+    at_given_pressure: dict[str, float]
+    largest_contact_fraction: float
+    effective_contacts: float  # that carry the load at closest approach
+    sampling_error: float  # scatter of the force there from patch to patch
+    area_sampling_error: float  # scatter of the contact area at the same force
     contact_fraction_at_pull_off: float
+    trusted_separation: float  # [m]
 
 
-class PlanTable(BatchTable):
+class PlanTable(TypedDict):
     """A plan: what a run would do."""
 
     implausible: list[str]  # what of sizes, units and pressures cannot be meant
+    title: str
+    sizes: dict[str, int]
+    coordinates: dict[str, CoordinateTable]
+    realizations: int  # of a cell, in the first round
+    steps: int
+    control: str
+    variables: list[str]
     keep: str
     runs: int
     tasks: int
@@ -145,7 +152,15 @@ class PlanTable(BatchTable):
     accuracy: dict[str, Any] | None  # "relative" or "of", "max_realizations", "method"
     choice: list[str]  # how a quantity is computed that is asked for, and what other methods would give
     cells: list[ForeseenTable]  # those that were tried
+    path: list[str]
+    lattice: list[str]  # that the asperities fill, with its pitch and patch
+    map: list[str]
+    trust: dict[str, str | None]
+    sample: str | None  # how far one stands for others
+    advice: str | None
+    warnings: list[str]
     failures: list[str]  # which of the cells that were tried cannot be computed, and why
+    left_out: list[str]
 
 
 class PartCellTable(TypedDict):
