@@ -47,7 +47,7 @@ if TYPE_CHECKING:
         Unfinished as Unfinished,
     )
     from roughmdr.fitting.fit import fit as fit
-    from roughmdr.pictures.plot import plot as plot
+    from roughmdr.pictures.kinds import plot as plot
     from roughmdr.report.cite import cite as cite
     from roughmdr.report.export.write import export as export
     from roughmdr.report.page import write_report as write_report
@@ -81,7 +81,7 @@ _ROOMS = {
     "ensemble": "generate",
     "errors": "FailedRuns LimitWarning OutOfRange RoughmdrError SceneError ShapeError StoreError Unfinished",
     "fitting.fit": "fit",
-    "pictures.plot": "plot",
+    "pictures.kinds": "plot",
     "report.cite": "cite",
     "report.export.write": "export",
     "report.page": "write_report",

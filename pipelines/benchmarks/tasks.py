@@ -21,7 +21,7 @@ from roughmdr.batch.rounds import Rounds
 from roughmdr.batch.task_result import TaskResult
 from roughmdr.batch.tasks import split_into_tasks
 from roughmdr.numerics.arguments import Floats
-from roughmdr.runner.cluster import connected
+from roughmdr.runner.backend import connected
 from roughmdr.runner.local import Pool, Processes, Threads
 
 SCHEDULERS = ("threads", "processes", "distributed")

@@ -293,7 +293,7 @@ class Analysis:
         >>> [axes.get_ylabel() for axes in result.roughmdr.plot(variables="contact_count").axes]
         ['contact count']
         """
-        from roughmdr.pictures.plot import plot
+        from roughmdr.pictures.kinds import plot
         from roughmdr.result.curves import result_of
 
         result_of(self._dataset)

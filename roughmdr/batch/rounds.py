@@ -9,9 +9,17 @@ from roughmdr.batch.collect import Collector
 from roughmdr.batch.costs import seconds
 from roughmdr.batch.plan import Plan
 from roughmdr.batch.resume.keys import keys_of
-from roughmdr.batch.stopping_rule import FEWEST, FIRST, error_at, is_enough, missing_count, next_count, relative_error
+from roughmdr.batch.stopping_rule import (
+    FEWEST,
+    FIRST,
+    RareAsperities,
+    error_at,
+    is_enough,
+    missing_count,
+    next_count,
+    relative_error,
+)
 from roughmdr.batch.tasks import RunRange
-from roughmdr.batch.unmet import RareAsperities
 from roughmdr.scene.sections import Accuracy
 from roughmdr.variables import DONE
 

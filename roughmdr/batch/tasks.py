@@ -15,8 +15,8 @@ from roughmdr.batch.costs import seconds
 from roughmdr.batch.moments import KnownMoments, Moments, MomentTree
 from roughmdr.batch.plan import Cell, Plan
 from roughmdr.batch.realization import simulate_realization
-from roughmdr.batch.resume.claims import claims_in
 from roughmdr.batch.resume.keys import check_versions, versions
+from roughmdr.batch.resume.locks import claims_in
 from roughmdr.batch.resume.manifest import Runs
 from roughmdr.batch.task_result import ResultRow, Row, TaskResult, merge_rows, row_of
 from roughmdr.errors import RoughmdrError

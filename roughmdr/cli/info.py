@@ -72,9 +72,8 @@ def info(ctx: click.Context, result: Path, cells: bool, follow: bool, as_json: b
 
 def _follow(result: Path) -> Path:
     """Print how far a batch is until no run is at work; return its result, or the folder of its parts without one."""
-    from roughmdr.batch.resume.kept import progress_of, read_kept
+    from roughmdr.batch.resume.kept import SoFar, progress_of, read_kept
     from roughmdr.batch.resume.manifest import MANIFEST
-    from roughmdr.batch.resume.so_far import SoFar
     from roughmdr.batch.resume.store import store_folder
     from roughmdr.report.parts import describe_progress, law_lines
     from roughmdr.schema.wording import format_table

@@ -36,8 +36,7 @@ def plot(file: Path, output: Path, style: str | None, fresh: bool, at: tuple[str
     Of a result the law is drawn, or, of a sweep of many cells, the pull-off against what was swept. An existing picture
     of the same format is replaced, since FILE draws it again.
     """
-    from roughmdr.pictures.kinds import draw_request
-    from roughmdr.pictures.plot import check_picture
+    from roughmdr.pictures.kinds import check_picture, draw_request
     from roughmdr.pictures.request import Request, drawable
     from roughmdr.pictures.style import save, styled
 

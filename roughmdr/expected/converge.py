@@ -7,7 +7,6 @@ panels.
 import math
 from collections.abc import Callable, Sequence
 from contextlib import suppress
-from functools import partial
 from typing import NamedTuple
 
 import numpy as np
@@ -16,9 +15,8 @@ from roughmdr.aggregate.totals import DISSIPATED
 from roughmdr.ensemble.nodes import Rule
 from roughmdr.errors import RoughmdrError
 from roughmdr.expected.detached import PartialRule, sums_of
-from roughmdr.expected.kinks import KinkSplit
 from roughmdr.expected.node import MeanProblem, QuadratureNode, set_up
-from roughmdr.expected.panels import RTOL_PANEL, halve_panels
+from roughmdr.expected.split_rules import RTOL_PANEL, KinkSplit, halve_panels
 from roughmdr.numerics.arguments import Floats, Ints
 
 FIRST_ORDER = 8
@@ -143,7 +141,7 @@ def converge(problem: MeanProblem, split: KinkSplit | None, *, dissipating: bool
         smooth = _converge_order(problem, curves, set_up(problem, *_first_rules(problem)))
     if smooth is not None and max(smooth.error, smooth.error_of_others, _mean_errors(problem, smooth.rules)) <= limit:
         return smooth
-    rule, nodes, errors = halve_panels(partial(set_up, problem), lambda nodes: curves(nodes, None), rtol)
+    rule, nodes, errors = halve_panels(problem, lambda nodes: curves(nodes, None), rtol)
     errors *= factor
     if smooth is not None and max(smooth.error, smooth.error_of_others) <= errors.max():
         return smooth

@@ -17,12 +17,11 @@ from typing import NamedTuple
 import numpy as np
 
 from roughmdr.aggregate.totals import DISSIPATED, ERROR, STIFFNESS
-from roughmdr.ensemble.nodes import Rule
+from roughmdr.ensemble.nodes import Line, Rule, crossings, lines_along, weighty
 from roughmdr.expected.curve import Curve, scales_of
 from roughmdr.expected.heights import HeightTable
 from roughmdr.expected.intervals import Intervals, has_branches, jump_energies
 from roughmdr.expected.node import MeanProblem, QuadratureNode, dissipated_of, totals_of
-from roughmdr.expected.score_lines import Line, crossings, lines_along, weighty
 from roughmdr.expected.table import ORDER
 from roughmdr.numerics.arguments import Floats, Ints
 from roughmdr.numerics.chebyshev import find_piece, series_at

@@ -30,24 +30,24 @@ class Intervals(NamedTuple):
         step, before, branch = columns[:3].astype(np.int64)
         return cls(step, before, branch, columns[3], columns[4])
 
+    def some(self, which: NDArray[np.bool_] | Ints) -> "Intervals":
+        """Return some of the intervals, by their numbers or by whether they are among them."""
+        return Intervals(
+            self.step[which], self.branch_before[which], self.branch[which], self.begin[which], self.end[which]
+        )
+
     def at_steps(self, selected: NDArray[np.bool_]) -> "Intervals":
         """Return the intervals of the steps that are ``selected`` [step]."""
-        kept = selected[self.step]
-        step, before, branch, begin, end = self
-        return Intervals(step[kept], before[kept], branch[kept], begin[kept], end[kept])
+        return self.some(selected[self.step])
 
     def around(self, height: float) -> "Intervals":
         """Return the intervals that hold a height [m], at most one a step."""
-        kept = (self.begin <= height) & (height < self.end)
-        step, before, branch, begin, end = self
-        return Intervals(step[kept], before[kept], branch[kept], begin[kept], end[kept])
+        return self.some((self.begin <= height) & (height < self.end))
 
     def up_to(self, ends: Floats) -> "Intervals":
         """Return the part of each interval below ``ends`` [step]; those that begin there are left out."""
-        ends = ends[self.step]
-        kept = self.begin < ends
-        step, before, branch, begin, _ = self
-        return Intervals(step[kept], before[kept], branch[kept], begin[kept], ends[kept])
+        cut = self._replace(end=ends[self.step])
+        return cut.some(cut.begin < cut.end)
 
     def disjoint(self, separation: Floats) -> "tuple[Intervals, Ints, Ints]":
         """Return intervals that end where others at the same separation [m] and on the same branch begin.
@@ -55,8 +55,7 @@ class Intervals(NamedTuple):
         They are numbered instead of the steps, which are returned with how many intervals each has to be added to.
         """
         order = np.lexsort((-self.begin, self.end, self.branch, separation[self.step]))
-        step, before, branch = self.step[order], self.branch_before[order], self.branch[order]
-        begin, end = self.begin[order], self.end[order]
+        step, before, branch, begin, end = self.some(order)
         same = np.zeros(step.size, dtype=bool)
         same[1:] = (separation[step[1:]] == separation[step[:-1]]) & (branch[1:] == branch[:-1]) & (end[1:] == end[:-1])
         number = np.arange(step.size)

@@ -12,9 +12,8 @@ from roughmdr.ensemble import Source
 from roughmdr.ensemble.nodes import Heights, Nodes, Rule
 from roughmdr.expected.curve import Curve, curves_of, curves_to_touch, quantities_of, scales_of
 from roughmdr.expected.heights import HeightTable
-from roughmdr.expected.integral import integrate
+from roughmdr.expected.integral import MeanContact, integrate
 from roughmdr.expected.intervals import Intervals, contact_intervals, has_branches, jump_energies
-from roughmdr.expected.mean_contact import MeanContact
 from roughmdr.kernels.adhesion import Adhesion
 from roughmdr.kernels.interface import Kernels
 from roughmdr.numerics.arguments import Floats
@@ -80,20 +79,12 @@ def contacts_of(problem: MeanProblem, nodes: Nodes) -> list[Contact]:
     return [Contact.rounded(one, problem.effective_modulus, problem.adhesion) for one in shapes]
 
 
-def set_up(problem: MeanProblem, *rules: Rule) -> list[QuadratureNode]:
+def set_up(problem: MeanProblem, *rules: Rule, shared: bool = True) -> list[QuadratureNode]:
     """Return the nodes at the scores of a rule, or of one for each random parameter.
 
-    Those of one branch have curves up to first touch, and share the rest.
+    Where tables are ``shared``, nodes of one branch have curves up to first touch and one mean contact above it; else
+    each has the whole curve of its contact.
     """
-    return _nodes(problem, rules, shared=True)
-
-
-def set_up_apart(problem: MeanProblem, *rules: Rule) -> list[QuadratureNode]:
-    """Return likewise the nodes, each with the whole curve of its contact."""
-    return _nodes(problem, rules, shared=False)
-
-
-def _nodes(problem: MeanProblem, rules: tuple[Rule, ...], *, shared: bool) -> list[QuadratureNode]:
     nodes, rows, closest = problem.source.nodes(*rules), problem.rows, float(problem.path.separation.min())
     contacts = contacts_of(problem, nodes)
     heights_of = {heights: HeightTable.of(heights) for heights in dict.fromkeys(nodes.heights)}

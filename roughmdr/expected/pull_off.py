@@ -5,8 +5,8 @@ import numpy as np
 from roughmdr.aggregate import LoadingPath
 from roughmdr.aggregate.totals import AREA, COUNT, FORCE
 from roughmdr.expected.converge import Converged
-from roughmdr.expected.kinks import KinkSplit
 from roughmdr.expected.node import MeanProblem, QuadratureNode, moved
+from roughmdr.expected.split_rules import KinkSplit
 from roughmdr.loading.pull_off import WITHOUT_TENSION, PullOff, Unloading, locate, unloadings
 from roughmdr.numerics.arguments import Floats
 

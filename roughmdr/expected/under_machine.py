@@ -1,6 +1,7 @@
 """The expected law of asperities whose flat hangs on a machine: that of a surface without end."""
 
 from collections.abc import Iterable
+from functools import partial
 
 import numpy as np
 
@@ -47,15 +48,10 @@ def compute_under_machine(
     clear = max(clear, first_touch)
     depth = source.sigma or float(extreme.columns.rise[0])
 
+    of_means = partial(compute, source, effective_modulus=effective_modulus, adhesion=adhesion, interaction=interaction)
+
     def along(separation: Floats, names: list[str]) -> LoadSeparation:
-        return compute(
-            source,
-            LoadingPath.along(separation, unload=False, adhesive=path.adhesive),
-            effective_modulus=effective_modulus,
-            adhesion=adhesion,
-            variables=names,
-            interaction=interaction,
-        )
+        return of_means(LoadingPath.along(separation, unload=False, adhesive=path.adhesive), variables=names)
 
     def law(turns: Floats, separation: Floats) -> tuple[Floats, Floats]:
         found = along(np.concatenate([turns, separation]), ["force", "stiffness"]).variables

@@ -13,7 +13,7 @@ from roughmdr.aggregate.tabor import JkrValidity, jkr_validity
 from roughmdr.batch.plan import Cell
 from roughmdr.ensemble import Ensemble, NayakAsperities, RandomAsperities, SurfaceAsperities
 from roughmdr.ensemble.gaussian.summit_distribution import SUMMITS_LESS, SummitDistribution
-from roughmdr.ensemble.maps.waves import MapWaves
+from roughmdr.ensemble.maps.height_map import MapWaves
 from roughmdr.ensemble.maps.words import describe_moments, describe_spectrum
 from roughmdr.ensemble.random.distribution import Distribution
 from roughmdr.errors import RoughmdrError

@@ -6,8 +6,7 @@ from itertools import islice
 from pathlib import Path
 
 from roughmdr.batch.plan import Plan
-from roughmdr.batch.resume.kept import Kept, Progress, progress_of, read_kept
-from roughmdr.batch.resume.so_far import LawSoFar, SoFar
+from roughmdr.batch.resume.kept import Kept, LawSoFar, Progress, SoFar, progress_of, read_kept
 from roughmdr.report.documents import LawTable, PartCellTable, PartsTable
 from roughmdr.report.result_document import swept_table
 from roughmdr.scene.sweep import describe_cell

@@ -10,8 +10,7 @@ from roughmdr.ensemble.maps.words import describe_map
 from roughmdr.fitting.stored import given_fit
 from roughmdr.fitting.words import describe_fit
 from roughmdr.report.advice import advice_on
-from roughmdr.report.contacts import conduction_lines, contact_pressure_lines, sample_of_result
-from roughmdr.report.pull_off import describe_pull_off
+from roughmdr.report.contacts import conduction_lines, contact_pressure_lines, describe_pull_off, sample_of_result
 from roughmdr.result.given import given_result
 from roughmdr.result.trust import trust_of_result
 from roughmdr.result.view import ResultView

@@ -13,22 +13,19 @@ from roughmdr.batch.collect import Collector
 from roughmdr.batch.costs import ensemble_bytes, file_bytes, result_bytes
 from roughmdr.batch.foresee import check_foreseen
 from roughmdr.batch.plan import Plan
-from roughmdr.batch.resume.find import check_no_less, find_previous, is_finished, reuse
-from roughmdr.batch.resume.reusable import ReusableRows
+from roughmdr.batch.resume.find import ReusableRows, check_no_less, find_previous, is_finished, reuse
 from roughmdr.batch.resume.share import Share
-from roughmdr.batch.resume.writer import CheckpointWriter
+from roughmdr.batch.resume.writer import BETWEEN_LOOKS, CheckpointWriter, Together, WrittenElsewhereError
 from roughmdr.batch.rounds import Rounds
 from roughmdr.batch.task_result import TaskResult
 from roughmdr.batch.tasks import RunRange, Task, first_error, prepare_all, split_into_tasks
 from roughmdr.errors import RoughmdrError, StoreError, Unfinished
 from roughmdr.numerics.compiling import compiling
 from roughmdr.result.assemble import assemble, curves_so_far
-from roughmdr.runner.backend import Backend
-from roughmdr.runner.cluster import Cluster
+from roughmdr.runner.backend import Backend, Cluster
 from roughmdr.runner.local import Pool, Serial, Sink, Threads
 from roughmdr.runner.progress import Progress, progress, tell_compiling
 from roughmdr.runner.signals import Interrupted, interruptible
-from roughmdr.runner.together import BETWEEN_LOOKS, Together, WrittenElsewhereError
 from roughmdr.storage.files import NETCDF_ENDINGS, ZARR_ENDING, check_ending, check_writable, destination
 from roughmdr.storage.labelled import Labelled
 from roughmdr.storage.memory import check_memory, describe_available_memory

@@ -1,4 +1,7 @@
-"""Compiles the functions that scenes need before they are run, by short runs in several processes."""
+"""Compiles the functions that scenes need before they are run, by short runs in several processes.
+
+Without scenes small ones together compile all that runs need: each shape under each adhesion model, and each section.
+"""
 
 import time
 from collections import Counter
@@ -14,12 +17,88 @@ from roughmdr.runner.backend import Backend
 from roughmdr.runner.local import over_processes
 from roughmdr.runner.progress import progress
 from roughmdr.runner.run import execute
-from roughmdr.runner.small_scenes import small_scenes
 from roughmdr.scene import Scene, read
+from roughmdr.shapes import SCENE_SHAPES
+from roughmdr.stages import STAGES
 
-_STEPS = 8
+_STEPS = 6
+"""Number of steps of a path, enough for contacts to be made and lost on the way."""
+_PARAMETERS = {
+    "radius": "50 um",
+    "cap_radius": "90 um",
+    "edge_radius": "20 um",
+    "flat_radius": "2 um",
+    "blend_radius": "2 um",
+    "slope": 0.1,
+    "exponent": 3,
+    "width": "10 um",
+    "rise": "1 um",
+    "terms": {"2": 1e4, "4": 1e14},
+    "r": [0, "5 um", "20 um"],
+    "f": [0, "0.2 um", "3 um"],
+}
+"""Parameters of shapes of some 10 um."""
+_OTHER_KEYS = {"power_law": ("exponent", "width", "rise"), "power_series": ("terms",), "tabulated": ("r", "f")}
+_ADHESION: dict[str, dict[str, Any]] = {
+    "none": {},
+    "jkr": {"adhesion": {"model": "jkr", "work": "10 mJ/m^2"}},
+    "dugdale": {"adhesion": {"model": "dugdale", "work": "10 mJ/m^2", "range": "20 nm"}},
+}
+_HILLS = {"source": "spectrum", "patch": "60 um", "hurst": 0.8, "long_wave": "30 um", "short_wave": "10 um"}
+_SEPARATION = {"separation": {"start": "2 sigma", "stop": "1 sigma", "steps": _STEPS}}
+_PAIRS = {"model": "pairwise", "boundary": "periodic"}
+_SECTIONS: dict[str, dict[str, Any]] = {
+    "pairs, periodic": {"interaction": _PAIRS},
+    "pairs, free": {"interaction": {**_PAIRS, "boundary": "free"}},
+    "adhesive pairs": {"interaction": _PAIRS, **_ADHESION["jkr"]},
+    "mean field": {"interaction": {"model": "mean_field"}},
+    **{stage.key: dict(stage.small_scene) for stage in STAGES},
+    "summits": {"asperities": {"source": "nayak", "patch": "1 mm", "m0": "1 um^2", "m2": 1e-2, "m4": "2e8 m^-2"}},
+    "hills": {"asperities": {**_HILLS, "rms_slope": 0.05}},
+}
+"""Sections of scenes that compile more than shapes and adhesion do."""
+_MOST_STEPS = 8
 """Largest number of steps of a path, enough for contacts to be made and lost on the way."""
 _Used = dict[str, Path | None]
+
+
+def small_scenes() -> Iterator[dict[str, Any]]:
+    """Yield the scenes; those that share most code follow each other."""
+    for model, section in _ADHESION.items():
+        for shape in SCENE_SHAPES:
+            yield from _along_paths(f"{shape}, {model}", {**section, "asperities": _asperities(shape)})
+        table = {**_HILLS, "rms_slope": 0.05, "shape": "mdr_table"}
+        yield from _along_paths(f"mdr_table, {model}", {**section, "asperities": table})
+    for name, sections in _SECTIONS.items():
+        yield _scene(name, sections)
+    metal, yielding = {"modulus": "1 GPa", "poisson": 0.3}, _SECTIONS["plasticity"]
+    for shape in ("cone", "flat_punch"):
+        yield _scene(f"plasticity, {shape}", {**yielding, "material": metal, "asperities": _asperities(shape)})
+
+
+def _along_paths(title: str, sections: dict[str, Any]) -> Iterator[dict[str, Any]]:
+    """Yield scenes of a shape and an adhesion model along separations and under machines, and its expected law."""
+    separation = {**_SEPARATION, "unload": True}
+    output = {"variables": ["force", "contact_area", "contact_count", "stiffness", "energy"]}
+    yield _scene(title, {**sections, "path": separation, "output": output})
+    yield _scene(f"{title}, force", {**sections, "path": {"force": {"stop": "1 uN", "steps": _STEPS}, "unload": True}})
+    remote = {"start": "2 sigma", "stop": "1 sigma", "steps": _STEPS}
+    spring = {"remote": remote, "machine_stiffness": "1 kN/m", "unload": True}
+    yield _scene(f"{title}, spring", {**sections, "path": spring})
+    if sections["asperities"]["source"] == "random":
+        yield _scene(f"{title}, expected", {**sections, "path": separation, "batch": {"estimator": "expected"}})
+
+
+def _asperities(shape: str) -> dict[str, Any]:
+    keys = _OTHER_KEYS.get(shape) or tuple(SCENE_SHAPES[shape].units)
+    height = {"distribution": "normal", "std": "1 um"}
+    table = {"source": "random", "shape": shape, "count": 20, "patch": "1 mm", "height": height}
+    return table | {key: _PARAMETERS[key] for key in keys}
+
+
+def _scene(title: str, sections: dict[str, Any]) -> dict[str, Any]:
+    usual = {"material": {"effective_modulus": "1 GPa"}, "asperities": _asperities("paraboloid"), "path": _SEPARATION}
+    return {"title": title, "seed": 1, **usual, **sections}
 
 
 class Warmed(NamedTuple):
@@ -66,9 +145,9 @@ def _shorten(table: dict[str, Any], estimator: str) -> None:
     path = table["path"]
     for section in (path, *path.values()):
         if isinstance(section, dict) and isinstance(section.get("steps"), int):
-            section["steps"] = min(section["steps"], _STEPS)
+            section["steps"] = min(section["steps"], _MOST_STEPS)
     if any(key.startswith("preload") for key in path):
-        path["steps"] = min(path.get("steps", _STEPS), _STEPS)
+        path["steps"] = min(path.get("steps", _MOST_STEPS), _MOST_STEPS)
 
 
 def _run(scene: Scene) -> _Used:

@@ -12,9 +12,8 @@ from command import said
 from scenes import ASPERITIES, scene
 
 import roughmdr as rm
-from roughmdr.batch.resume import so_far as module
-from roughmdr.batch.resume.kept import progress_of, read_kept
-from roughmdr.batch.resume.so_far import LawSoFar, SoFar
+from roughmdr.batch.resume import kept as module
+from roughmdr.batch.resume.kept import LawSoFar, SoFar, progress_of, read_kept
 
 FEW = {**ASPERITIES, "count": 50}
 

@@ -17,12 +17,11 @@ from studies.versus_bem.ensembles import write_map
 
 import roughmdr as rm
 from roughmdr.elements.half_space import BoundaryElements
-from roughmdr.ensemble.maps.height_map import HeightMap
-from roughmdr.ensemble.maps.hills.ellipse import area_share, complete_elliptic
+from roughmdr.ensemble.maps.height_map import HeightMap, slope_ratio
+from roughmdr.ensemble.maps.hills.contact import area_share, complete_elliptic
 from roughmdr.ensemble.maps.hills.find import fill_table, find_hills, points_of
 from roughmdr.ensemble.maps.resolution import HILLS_BY_BORDER
 from roughmdr.ensemble.maps.summits import find_summits
-from roughmdr.ensemble.maps.waves import slope_ratio
 from roughmdr.numerics.arguments import Floats
 from roughmdr.spectrum import SelfAffine
 

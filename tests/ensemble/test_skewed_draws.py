@@ -12,7 +12,7 @@ from scipy.special import ndtr, ndtri
 
 import roughmdr as rm
 from roughmdr.batch.plan import make_plan
-from roughmdr.batch.unmet import RareAsperities
+from roughmdr.batch.stopping_rule import RareAsperities
 from roughmdr.ensemble import RandomAsperities
 from roughmdr.runner.backend import Backend
 from roughmdr.runner.run import execute

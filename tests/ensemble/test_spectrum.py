@@ -10,10 +10,8 @@ from pydantic import ValidationError
 from scipy.special import ndtri
 
 import roughmdr as rm
-from roughmdr.ensemble.maps.height_map import map_statistics
-from roughmdr.ensemble.maps.waves import slope_ratio
-from roughmdr.ensemble.spectral.section import SpectrumAsperities
-from roughmdr.ensemble.spectral.surface import Waves
+from roughmdr.ensemble.maps.height_map import map_statistics, slope_ratio
+from roughmdr.ensemble.spectral.section import SpectrumAsperities, Waves
 from roughmdr.numerics.arguments import Floats
 from roughmdr.spectrum import SelfAffine
 

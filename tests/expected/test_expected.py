@@ -13,7 +13,7 @@ from scenes import ensemble
 import roughmdr as rm
 from roughmdr.aggregate import LoadingPath
 from roughmdr.asperity.contact import Contact
-from roughmdr.expected import converge, panels
+from roughmdr.expected import converge, split_rules as panels
 from roughmdr.expected.intervals import contact_intervals
 from roughmdr.expected.table import AdaptiveTable
 from roughmdr.kernels.adhesion import Adhesion

@@ -17,7 +17,7 @@ PACKAGE = Path(__file__).parent.parent.parent / "roughmdr"
 _RUN = """
 import sys
 
-from roughmdr.batch.resume.reusable import ReusableRows
+from roughmdr.batch.resume.find import ReusableRows
 from roughmdr.cli import main
 used = []
 read = ReusableRows.read

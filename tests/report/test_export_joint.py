@@ -12,7 +12,7 @@ from scenes import scene
 from scipy.optimize import curve_fit
 
 import roughmdr as rm
-from roughmdr.report.export.joint import SEATING, hyperbola
+from roughmdr.report.export.header import SEATING, hyperbola
 
 
 @settings(deadline=None)

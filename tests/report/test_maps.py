@@ -14,8 +14,7 @@ import roughmdr as rm
 from roughmdr.aggregate.load_separation import load_separation
 from roughmdr.batch.plan import make_plan
 from roughmdr.cli import main
-from roughmdr.ensemble.maps.height_map import HeightMap
-from roughmdr.ensemble.maps.waves import MapWaves
+from roughmdr.ensemble.maps.height_map import HeightMap, MapWaves
 from roughmdr.pictures.overlay import overlay_theory
 from roughmdr.report.cutoffs import pressure_at
 from roughmdr.scene import read

@@ -36,7 +36,7 @@ import roughmdr as rm
 from roughmdr.batch.estimate import suits_processes
 from roughmdr.batch.plan import make_plan
 from roughmdr.errors import RoughmdrError
-from roughmdr.runner import cluster
+from roughmdr.runner import backend as cluster
 from roughmdr.runner.backend import Backend
 from roughmdr.runner.run import execute
 from roughmdr.scene import read

@@ -28,16 +28,16 @@ from scenes import scene
 
 import roughmdr as rm
 from roughmdr.batch.plan import make_plan
-from roughmdr.batch.resume.claims import claims_in, give_up
 from roughmdr.batch.resume.kept import read_kept
 from roughmdr.batch.resume.keys import versions
+from roughmdr.batch.resume.locks import claims_in, give_up
 from roughmdr.batch.resume.manifest import MANIFEST, Runs
 from roughmdr.batch.resume.store import CheckpointStore
+from roughmdr.batch.resume.writer import Together
 from roughmdr.batch.task_result import TaskResult, not_run
 from roughmdr.batch.tasks import RunRange, Task, compute, split_into_tasks
 from roughmdr.errors import StoreError
 from roughmdr.runner.batch import begun
-from roughmdr.runner.together import Together
 from roughmdr.scene import read
 from roughmdr.storage.result_file import read_result
 
@@ -240,7 +240,7 @@ def test_ranges_of_a_task_result_are_its_runs(sizes: list[tuple[int, int, bool]]
 _CLAIM = """
 import sys
 from pathlib import Path
-from roughmdr.batch.resume.claims import claims_in
+from roughmdr.batch.resume.locks import claims_in
 from roughmdr.batch.resume.manifest import MANIFEST, Runs
 claims = claims_in(Path(sys.argv[1]))
 print(*(claims.take([Runs("a", 10 * i, 10 * i + 10)]) for i in range(3)), claims.finish(), flush=True)

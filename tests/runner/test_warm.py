@@ -13,8 +13,7 @@ from click.testing import CliRunner
 from scenes import scene
 
 from roughmdr.cli import main
-from roughmdr.runner.small_scenes import small_scenes
-from roughmdr.runner.warm import _shortened
+from roughmdr.runner.warm import _shortened, small_scenes
 from roughmdr.scene import read
 from roughmdr.shapes import SHAPES
 

@@ -17,11 +17,10 @@ import roughmdr as rm
 from roughmdr.elements.half_space import BoundaryElements
 from roughmdr.ensemble.ensemble import Ensemble
 from roughmdr.ensemble.maps.detrend import remove_trend
-from roughmdr.ensemble.maps.height_map import HeightMap
+from roughmdr.ensemble.maps.height_map import HeightMap, MapWaves
 from roughmdr.ensemble.maps.hills.find import SCALES, find_hills, wavelength
 from roughmdr.ensemble.maps.read_map import read_map
 from roughmdr.ensemble.maps.summits import find_summits
-from roughmdr.ensemble.maps.waves import MapWaves
 from roughmdr.numerics.arguments import Floats
 from studies.comparison import law_or_nan
 from studies.study import timed

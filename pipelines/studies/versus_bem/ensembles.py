@@ -10,8 +10,8 @@ import xarray as xr
 from oracles.gaussian_maps import gaussian_map
 
 import roughmdr as rm
-from roughmdr.ensemble.maps.found import asperities_on
 from roughmdr.ensemble.maps.height_map import HeightMap
+from roughmdr.ensemble.maps.section import asperities_on
 from roughmdr.numerics.arguments import Floats
 from roughmdr.spectrum import SelfAffine
 from roughmdr.storage.labelled import Labelled

@@ -20,8 +20,7 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from roughmdr.batch.resume.claims import CLAIMS, Claims, claims_in, give_up
-from roughmdr.batch.resume.lock import LOCK, FolderLock, acquire_lock
+from roughmdr.batch.resume.locks import CLAIMS, LOCK, Claims, FolderLock, acquire_lock, claims_in, give_up
 from roughmdr.batch.resume.manifest import FILE, MANIFEST, Manifest, StoredFile
 from roughmdr.batch.task_result import TaskResult
 from roughmdr.errors import StoreError

@@ -1,29 +1,86 @@
 """source = "surface": the summits of a measured height map, as paraboloids, or its hills, with a profile each."""
 
+from collections.abc import Mapping
+from dataclasses import replace
 from functools import cached_property
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import Annotated, ClassVar, Literal
 
 import numpy as np
-from pydantic import StrictBool, field_validator
+from pydantic import StrictBool, field_validator, model_validator
 
 from roughmdr.ensemble.ensemble import Ensemble
 from roughmdr.ensemble.from_file import FromFile
 from roughmdr.ensemble.maps.detrend import Trend, remove_short_waves, remove_trend
-from roughmdr.ensemble.maps.found import MapSource, Model, asperities_on, summits_on
-from roughmdr.ensemble.maps.height_map import HeightMap, mean_and_rms
+from roughmdr.ensemble.maps.height_map import HeightMap, MapWaves, map_statistics, mean_and_rms
 from roughmdr.ensemble.maps.outliers import Treatment
 from roughmdr.ensemble.maps.raw_map import Size, SizeReader
 from roughmdr.ensemble.maps.read_map import read_map
-from roughmdr.ensemble.maps.waves import MapWaves
-from roughmdr.ensemble.maps.words import describe_map
+from roughmdr.ensemble.maps.resolution import radius_uncertainty, warning
+from roughmdr.ensemble.maps.summits import find_summits
+from roughmdr.ensemble.maps.words import describe_map, implausible
+from roughmdr.ensemble.source import Source
 from roughmdr.errors import RoughmdrError, SceneError
+from roughmdr.schema.quantities import EntryError
 from roughmdr.schema.section import Length
 from roughmdr.schema.units import unit_factor
 
+Model = Literal["summits", "hills"]
 _ROUNDING = 64 * np.finfo(float).eps  # rounding error of heights after a trend was removed, over the largest height
 _UNCUT = ("rms_height", "rms_slope", "mean_curvature_radius")
 """Attributes of an ensemble that are given for the map before the cutoff too."""
+
+
+class MapSource(Source):
+    """A source whose asperities are the summits or hills of a map."""
+
+    of_surface: ClassVar[bool] = True
+    papers: ClassVar[dict[str, str]] = {"Greenwood2006": "roughness"}
+
+    model: Model
+    """"summits": a paraboloid each; "hills", for [interaction]: the profile of each hill."""
+    shape: Literal["paraboloid", "mdr_table"] | None = None
+    """Shape of the asperities, which decides the other keys."""
+
+    @model_validator(mode="after")
+    def _shape_of_the_model(self) -> "MapSource":
+        own = "paraboloid" if self.model == "summits" else "mdr_table"
+        if self.shape not in (None, own):
+            raise EntryError("shape", self.shape, f"is not that of model = {self.model!r}: {own}; leave it out")
+        return self
+
+
+def summits_on(surface: HeightMap, noise: float, detrend: str) -> Ensemble:
+    """Return the summits of a map that stand out by more than ``noise`` [m], with the statistics of the map.
+
+    RoughmdrError where there are none, after a trend was removed by ``detrend``, or where no float holds their radii.
+    """
+    if not np.nanmax(surface.height) - np.nanmin(surface.height) > noise:
+        raise RoughmdrError(f"the map has no summit: with detrend {detrend!r} it is flat, but for rounding")
+    with np.errstate(over="ignore", under="ignore"):  # refused below
+        summits = find_summits(surface, noise)
+    radius, area = summits.parameters["radius"], summits.nominal_area or 0.0
+    if not (np.isfinite(radius).all() and radius.min() > 0.0 and 0.0 < area < np.inf):
+        raise RoughmdrError(f"no float can hold its radii, or its area, {area:g} m2: is its size right?")
+    smallest = float(radius.min())  # over which no mean curvature overflows
+    mean = smallest / float(np.mean(smallest / radius))
+    return replace(summits, attrs={**summits.attrs, **map_statistics(surface), "mean_curvature_radius": mean})
+
+
+def asperities_on(
+    surface: HeightMap, noise: float, model: Model, name: str, attrs: Mapping[str, float | int | str]
+) -> Ensemble:
+    """Return the summits or hills of a map, with its statistics and further ``attrs``; a warning calls it ``name``."""
+    found = summits_on(surface, noise, str(attrs["detrend"]))
+    if model == "hills":
+        from roughmdr.ensemble.maps.hills.find import find_hills  # it alone needs the compiler
+
+        found = find_hills(surface, found)
+    all_attrs = {**found.attrs, **attrs}
+    if model == "summits":
+        all_attrs["radius_uncertainty"] = radius_uncertainty(all_attrs)
+    remarks = [f"{name}: {remark}" for remark in (implausible(all_attrs), attrs.get("doubtful")) if remark]
+    return replace(found, attrs=all_attrs, warnings=tuple(filter(None, (*remarks, warning(name, all_attrs)))))
 
 
 class SurfaceAsperities(MapSource, FromFile):

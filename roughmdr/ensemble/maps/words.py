@@ -2,8 +2,8 @@
 
 from collections.abc import Mapping
 
+from roughmdr.ensemble.maps.height_map import MapWaves
 from roughmdr.ensemble.maps.resolution import verdict
-from roughmdr.ensemble.maps.waves import MapWaves
 from roughmdr.schema.units import format_quantity
 
 

@@ -8,8 +8,7 @@ from numpy.typing import NDArray
 from roughmdr.errors import StoreError
 from roughmdr.numerics.arguments import Floats
 from roughmdr.report.export.law import Law, Quantity
-from roughmdr.report.export.stable import StablePart, stable_part
-from roughmdr.report.export.whole import even_points, whole_part
+from roughmdr.report.export.part import StablePart, even_points, stable_part, whole_part
 from roughmdr.result.between import ANYWHERE, REACH, off_line
 from roughmdr.schema.units import format_quantity
 

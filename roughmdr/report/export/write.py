@@ -13,10 +13,10 @@ from roughmdr.model_error.parts import PLASTIC
 from roughmdr.report.export.formats import FORMATS, Format
 from roughmdr.report.export.header import origin_lines, table_lines
 from roughmdr.report.export.law import QUANTITIES, Law, Quantity, law_of
+from roughmdr.report.export.part import columns_of, tangent_stiffness
 from roughmdr.report.export.table import MOST_ERROR, Table, table_of
 from roughmdr.report.export.text import Column, Document, text_of
 from roughmdr.report.export.units import UnitSystem
-from roughmdr.report.export.whole import columns_of, tangent_stiffness
 from roughmdr.result.given import given_result
 from roughmdr.result.select import cell_of, select
 from roughmdr.result.view import ResultView

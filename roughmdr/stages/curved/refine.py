@@ -11,7 +11,7 @@ from roughmdr.ensemble import Source
 from roughmdr.ensemble.nodes import Rule
 from roughmdr.errors import OutOfRange
 from roughmdr.expected.converge import FIRST_ORDER, converge
-from roughmdr.expected.node import MeanProblem, set_up_apart
+from roughmdr.expected.node import MeanProblem, set_up
 from roughmdr.kernels.adhesion import Adhesion
 from roughmdr.numerics.arguments import Floats
 from roughmdr.shapes import Shape
@@ -69,7 +69,8 @@ def solve(layer: Layer, shape: Shape, separation: Floats, error: float) -> Solut
         path = LoadingPath.along(some, unload=hysteretic, adhesive=adhesive)
         problem = MeanProblem(source, path, layer.effective_modulus, layer.adhesion, _ROWS_OF_RULE)
         rule = converge(problem, None, dissipating=False)
-        law = LocalLaw.of(set_up_apart(problem._replace(rows=ROWS), *rule.rules), density, scale, deepest)
+        nodes = set_up(problem._replace(rows=ROWS), *rule.rules, shared=False)
+        law = LocalLaw.of(nodes, density, scale, deepest)
         body, places, change = _on_wide_rings(law, shape, layer.effective_modulus, separation, error)
         if not adhesive or min(float(place.state.s.min()) for place in places) >= deepest:
             return Solution(body, places, change, rule.error)

@@ -8,12 +8,27 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roughmdr.ensemble.ensemble import Ensemble
-from roughmdr.ensemble.maps.height_map import HeightMap, map_statistics, spline_coefficients
-from roughmdr.ensemble.maps.hills.ellipse import PARAMETERS, area_share, improve
-from roughmdr.ensemble.maps.hills.territory import RAYS, STEPS, Spline, Territory, explore, raw_height, top_of
+from roughmdr.ensemble.maps.height_map import (
+    HeightMap,
+    map_statistics,
+    mean_square_laplacian,
+    slope_ratio,
+    spline_coefficients,
+)
+from roughmdr.ensemble.maps.hills.contact import (
+    PARAMETERS,
+    RAYS,
+    STEPS,
+    Spline,
+    Territory,
+    area_share,
+    explore,
+    improve,
+    raw_height,
+    top_of,
+)
 from roughmdr.ensemble.maps.resolution import HILLS_BY_BORDER, border_error, hills_error
 from roughmdr.ensemble.maps.summits import NEIGHBOURS
-from roughmdr.ensemble.maps.waves import mean_square_laplacian, slope_ratio
 from roughmdr.errors import SceneError
 from roughmdr.numerics.arguments import Floats
 from roughmdr.numerics.jit import njit
