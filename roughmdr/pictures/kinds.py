@@ -186,10 +186,11 @@ def plot(
     **options
         Of a law: ``x``, the variable to draw over; ``per_area``, whether to divide by the nominal area; ``log``,
         whether the axis is logarithmic; ``with_expected``, ``with_theory`` and ``with_reference``, whether to draw the
-        expected law of the scene, the theory curves that apply to it, and the law by boundary elements that the
-        result holds. Of a sweep: ``x``, the swept key along the axis; ``per_area``; ``log``; ``at``, a dictionary such
-        as ``{"force": "1 mN"}`` of where on the loading the variable is taken. Of both and others: ``select``, a
-        dictionary such as ``{"adhesion.work": "50 mJ/m^2"}`` of the part of a sweep. Of a map and an asperity:
+        expected law of the scene (of asperities that feel each other, as if they did not), the theory curves that
+        apply to it, and the law by boundary elements that the result holds. Of a sweep: ``x``, the swept key along the
+        axis; ``per_area``; ``log``; ``at``, a dictionary such as ``{"force": "1 mN"}`` of where on the loading the
+        variable is taken. Of both and others: ``select``, a dictionary such as ``{"adhesion.work": "50 mJ/m^2"}`` of
+        the part of a sweep. Of a map and an asperity:
         ``step``, which may be "pull-off", and ``realization``, counted from 0; of an asperity its number, ``asperity``,
         from the highest down.
 
