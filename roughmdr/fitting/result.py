@@ -37,7 +37,7 @@ def assembled(command: str, fit: Fitted, *, posterior: bool = False) -> Labelled
     known = uncertainty(model, found)
     draws = posterior_of(model, found, known) if posterior else None
     seconds = model.seconds + time.perf_counter() - started
-    law, scene, curve = model.law(found.x), model.fitted(found.x), model.curve
+    law, scene, curve = known.law, model.fitted(found.x), model.curve
     variables: dict[str, Array] = {}
     for i, parameter in enumerate(model.parameters):
         variables |= _of_parameter(parameter, i, found, known)

@@ -5,6 +5,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from roughmdr.aggregate import LoadSeparation
 from roughmdr.errors import OutOfRange
 from roughmdr.fitting.correlation import (
     POOR,
@@ -55,6 +56,8 @@ class Uncertainty(NamedTuple):
     """Largest shift of each x by the error of the law; None where that error is not known."""
     error_of_law: Floats | None
     """Error of the law [step], weighted as the deviations, likewise."""
+    law: LoadSeparation
+    """The law."""
 
     @property
     def covariance(self) -> Floats:
@@ -110,9 +113,10 @@ def uncertainty(model: Model, found: Found) -> Uncertainty:
     reach = _reach(influence, quantile, edges)
     stays = reach < (1.0 - _ROUNDING) * quantile * np.linalg.norm(influence, axis=1)
     ends = profiled(model, found, inverse, np.where(stays | (not edges.certain), -reach, reach))
-    error = _error_of_law(model, found)
+    law = model.law(found.x)
+    error = _error_of_law(model, found, law)
     shift = None if error is None else np.abs(inverse[:, :points] @ error)
-    return Uncertainty(influence, inverse, slopes, noise, ends, (ends != reach).any(axis=0), shift, error)
+    return Uncertainty(influence, inverse, slopes, noise, ends, (ends != reach).any(axis=0), shift, error, law)
 
 
 def apart_from_the_rest(
@@ -232,9 +236,8 @@ def by_residuals(inverse: Floats, left: Floats, residuals: Floats, rho: float = 
     return by_independent_noise(inverse * np.sqrt(variance), rho), freedom
 
 
-def _error_of_law(model: Model, found: Found) -> Floats | None:
+def _error_of_law(model: Model, found: Found, law: LoadSeparation) -> Floats | None:
     """Return the error of the law at the measured control [step], weighted; None where the law tells none."""
-    law = model.law(found.x)
     curve = law.model_error.curve
     if not np.isfinite(curve).all():
         return None
