@@ -7,12 +7,11 @@ neighbouring intervals are tried.
 """
 
 from collections.abc import Iterator
-from typing import NamedTuple
 
 import numpy as np
 
 from roughmdr.fitting.model import Model, Point
-from roughmdr.fitting.slopes import slopes_of
+from roughmdr.fitting.slopes import Jumps, jumps_at, slopes_of
 from roughmdr.numerics.arguments import Floats
 
 Interval = tuple[int, ...]
@@ -24,27 +23,7 @@ _NEWTON, _ITERATIONS, _HALVINGS = 4, 20, 8
 _LONGEST = 1.0  # longest change of x in an iteration
 _LESS = 1e-11  # relative decrease of the sum of squares below which iterations end
 _LEAST_GAIN = 1e-7  # relative decrease of the sum of squares by which another interval is better
-_LITTLE = 1e-6  # change of x in differences of the positions of jumps
 _FARTHEST = 2  # steps to the neighbours of an interval
-
-
-class Jumps(NamedTuple):
-    """Where the contact is made and lost along the path, in order."""
-
-    control: Floats
-    """[m]"""
-    slopes: Floats
-    """Derivatives [jump, parameter] of the control."""
-
-
-def jumps_at(model: Model, x: Floats) -> Jumps | None:
-    """Return where the contact is made and lost; None where the law, there or nearby, has no or other jumps."""
-    here = model.point(x).law.changes.control
-    changes = np.where(x + _LITTLE > model.bounds[1], -_LITTLE, _LITTLE)
-    found = [model.point_at(each).law.changes.control for each in x + np.diag(changes)] if here.size else []
-    if not found or any(each.size != here.size for each in found):
-        return None
-    return Jumps(here, np.stack([each - here for each in found], axis=1) / changes)
 
 
 def with_measured_jumps(model: Model, x: Floats) -> Floats:
@@ -147,23 +126,21 @@ def _improved(model: Model, point: Point) -> Point | None:
     axes, goal = right.T / np.maximum(sizes, _FLAT * sizes[0]), -left.T @ point.deviations
     low, high = model.bounds
     sides, ends = [np.eye(point.x.size), -np.eye(point.x.size)], [high - point.x, point.x - low]
-    for edged in (False, True):
-        jumps = jumps_at(model, point.x) if edged else None
-        if jumps is not None:
-            places, slopes = places_of(model, point.jumps, jumps)
-            sides, ends = [*sides, slopes, -slopes], [*ends, 1.0 - _INSIDE - places, places - _INSIDE]
-        u = projected(goal, np.concatenate(sides) @ axes, np.maximum(np.concatenate(ends), 0.0))
-        if _cost(point) * _LESS > goal @ goal - (goal - u) @ (goal - u):
-            return None
-        ahead = axes @ u
-        ahead /= max(np.abs(ahead).max() / _LONGEST, 1.0)
-        for _ in range(_HALVINGS if edged else 1):
-            trial = model.point(point.x + ahead)
-            if edged and trial.jumps != point.jumps:
-                trial = nearest_in(model, trial, point.jumps, jumps_at(model, trial.x)) or point
-            if trial.jumps == point.jumps and _cost(trial) < _cost(point):
-                return trial
-            ahead = 0.5 * ahead
+    if (jumps := jumps_at(model, point.x)) is not None:
+        places, slopes = places_of(model, point.jumps, jumps)
+        sides, ends = [*sides, slopes, -slopes], [*ends, 1.0 - _INSIDE - places, places - _INSIDE]
+    u = projected(goal, np.concatenate(sides) @ axes, np.maximum(np.concatenate(ends), 0.0))
+    if _cost(point) * _LESS > goal @ goal - (goal - u) @ (goal - u):
+        return None
+    ahead = axes @ u
+    ahead /= max(np.abs(ahead).max() / _LONGEST, 1.0)
+    for _ in range(_HALVINGS):
+        trial = model.point(np.clip(point.x + ahead, low, high))
+        if trial.jumps != point.jumps:
+            trial = nearest_in(model, trial, point.jumps, jumps_at(model, trial.x)) or point
+        if trial.jumps == point.jumps and _cost(trial) < _cost(point):
+            return trial
+        ahead = 0.5 * ahead
     return None
 
 

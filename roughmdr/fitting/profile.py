@@ -5,13 +5,15 @@ of them the law would miss the load measured there by much more than the noise. 
 over all other parameters.
 """
 
+import math
 from typing import NamedTuple
 
 import numpy as np
 
-from roughmdr.fitting.jumps import jumps_at, nearest_in, places_of, projected
+from roughmdr.fitting.jumps import nearest_in, places_of, projected
 from roughmdr.fitting.model import Model
 from roughmdr.fitting.search import Found
+from roughmdr.fitting.slopes import jumps_at
 from roughmdr.numerics.arguments import Floats
 
 _OFF = 0.2  # deviation of the increase of the sum of squares from that of the parabola, over the latter
@@ -79,8 +81,8 @@ def _end(model: Model, found: Found, i: int, ahead: Floats, goal: tuple[float, f
 
 
 _CERTAIN = 25.0  # least increase of the sum of squares beyond an edge, over the variance of the noise: five deviations
-_BISECTIONS = 50  # halvings in the search for the multiple of a direction
-_LARGEST = 1e9  # largest such multiple, over the least that may be long enough
+_FARTHEST = math.log(1e9)  # largest logarithm of the multiple of a direction over the least that may be long enough
+_SAME = 1e-13  # difference of that logarithm at which its search ends
 
 
 class Edges(NamedTuple):
@@ -125,10 +127,14 @@ def farthest(direction: Floats, radius: float, edges: Edges) -> float:
 
     It is the point within the edges that is nearest to some multiple of the direction, and grows with that.
     """
-    low = 0.5 * radius / float(np.linalg.norm(direction) or 1.0)
-    high = _LARGEST * low
-    for _ in range(_BISECTIONS):
-        middle = float(np.sqrt(low * high))
-        nearest = projected(middle * direction, edges.sides, edges.ends)
-        low, high = (low, middle) if np.linalg.norm(nearest) > radius else (middle, high)
-    return float(direction @ projected(low * direction, edges.sides, edges.ends))
+    from scipy.optimize import brentq
+
+    def nearest(multiple: float) -> Floats:
+        return projected(np.exp(multiple) * direction, edges.sides, edges.ends)
+
+    def excess(multiple: float) -> float:
+        return float(np.linalg.norm(nearest(multiple))) - radius
+
+    low = float(np.log(0.5 * radius / float(np.linalg.norm(direction) or 1.0)))
+    high = low + _FARTHEST
+    return float(direction @ nearest(brentq(excess, low, high, xtol=_SAME) if excess(high) > 0.0 else high))
