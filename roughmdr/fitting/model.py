@@ -27,9 +27,14 @@ class Point(NamedTuple):
 
     x: Floats
     deviations: Floats
-    """Law minus measurement, weighted; inf where the law cannot be computed."""
+    """Law minus measurement, weighted; inf where the law cannot be computed, as ``last_error`` of the model says."""
     law: Force
     """Empty where it cannot be computed."""
+
+    @property
+    def cost(self) -> float:
+        """The sum of squares of the deviations."""
+        return float(np.sum(np.square(self.deviations)))
 
     @property
     def jumps(self) -> tuple[int, ...]:
@@ -73,8 +78,7 @@ class Model:
         """Load that the spring of a machine bears where it is given; None where it is that of the law."""
         self._rule: ForceRule | None = None
         self.near: Spring | None = None
-        """How the load on a machine changes near the last parameters whose slopes were found, where it does not jump.
-        """
+        """How the load on a machine changes near the last parameters whose slopes were found; None where it jumps."""
         self.noise = 0.0 if curve.error is None else 1.0
         """Standard deviation of the noise in units of the deviations; priors count from when it is known."""
         count = len(self.parameters)
@@ -85,6 +89,9 @@ class Model:
         self.evaluations = 0
         self._points, self._read = dict[tuple[Any, ...], tuple[Point, object]](), (dict[str, float](), scene)
         self.last_error: RoughmdrError = OutOfRange("the expected law is not finite")
+
+    def __getstate__(self) -> dict[str, Any]:
+        return vars(self) | {"_points": {}}  # which are known by the identity of what is held
 
     def along(self, curve: MeasuredCurve) -> "Model":
         """Return the model of another curve, with its own spring constant where that of this curve is the machine's."""
@@ -114,10 +121,7 @@ class Model:
         """Return the law with these parameters; RoughmdrError where there is none."""
         scene, quantity = self.scene(x), self.curve.quantity
         names = [quantity] if scene.nominal_area is None else [quantity, "model_error_curve"]
-        law = simulate_realization(scene, self._path_in(scene, x, self.curve.values), 0, names, "expected")
-        if not np.isfinite(law.variables[quantity]).all():
-            raise OutOfRange("the expected law is not finite")
-        return law
+        return simulate_realization(scene, self._path_in(scene, x, self.curve.values), 0, names, "expected")
 
     def force(self, x: Floats, values: Floats) -> Force:
         """Return the force, or pressure, of the law along a control; RoughmdrError where there is no law."""
@@ -136,11 +140,8 @@ class Model:
         return found._replace(force=found.force / self._area(scene), changes=changes)
 
     def slopes(self, x: Floats, rule: ForceRule | None, path: LoadingPath | None = None) -> Slopes | None:
-        """Return the derivatives of the force at given separations, those that the law has unless a ``path`` is given;
-        None where other numbers matter.
-        """
-        scene = self.scene(x)
-        along = path or self._path_in(scene, x, self.curve.values)
+        """Return the derivatives of the force at the separations of the law, or of a path; None where not known."""
+        scene, along = self.scene(x), path or self._path_in(self.scene(x), x, self.curve.values)
         if not (self._is_plain and isinstance(along, LoadingPath)):
             return None
         with suppress(OutOfRange):  # the stiffness is infinite where contact is lost
@@ -150,7 +151,7 @@ class Model:
                 return Slopes(*(each / self._area(scene) for each in found))
         return None
 
-    def slopes_of_jumps(self, x: Floats) -> Slopes:
+    def slopes_at_jumps(self, x: Floats) -> Slopes:
         """Return the derivatives of the control [m] where the law jumps; NaN where they are not known.
 
         At a fold the indentation has no derivative with respect to the radius of the contact, so that it changes as it
@@ -176,9 +177,7 @@ class Model:
             return self.force(x, self.curve.values)
 
     def _along(self, x: Floats, values: Floats) -> tuple[LoadingPath | MachinePath, list[Jump]]:
-        """Return the path of the flat in the scene, with the jumps of a machine; that of the machine where the
-        separations are not sought apart from the law.
-        """
+        """Return the path of the flat, or of its machine where that needs the law, and the jumps of the machine."""
         scene = self.scene(x)
         path = self._path_in(scene, x, values)
         if not (self._is_plain and isinstance(path, MachinePath) and scene.asperities.all_alike):
@@ -229,10 +228,6 @@ class Model:
         self.spread = np.eye(before + best.size)
         self.spread[before:, before:] = spread
 
-    def deviations(self, x: Floats) -> Floats:
-        """Return law minus measurement, weighted; inf where the law cannot be computed, as ``last_error`` says."""
-        return self.point(x).deviations
-
     def point(self, x: Floats) -> Point:
         """Return the law with these parameters at the measured steps; the last ones are kept, by what is held."""
         held = self.borne, self._rule
@@ -244,20 +239,17 @@ class Model:
         return self._points[key][0]
 
     def _point(self, x: Floats) -> Point:
-        far = np.full(self.curve.load.size + len(self._from_priors(x)), np.inf)
-        nothing = Point(x, far, Force(np.empty(0), 0.0, _NOWHERE, None))
-        if not ((self.bounds[0] <= x) & (x <= self.bounds[1])).all():
+        priors, (low, high) = self._from_priors(x), self.bounds
+        nothing = Point(x, np.full(self.curve.load.size + priors.size, np.inf), Force(np.empty(0), 0.0, _NOWHERE, None))
+        if not ((low <= x) & (x <= high)).all():
             return nothing
         try:
             law = self.force(x, self.curve.values)
         except RoughmdrError as failure:
             self.last_error = failure
             return nothing
-        measured = (law.force + self.baseline(x) - self.curve.load) / self.curve.weight
-        found = np.append(measured, self._from_priors(x))
-        if not np.isfinite(found).all():
-            return nothing
-        return Point(x, found, law)
+        deviations = np.append((law.force + self.baseline(x) - self.curve.load) / self.curve.weight, priors)
+        return Point(x, deviations, law) if np.isfinite(deviations).all() else nothing
 
     def _from_priors(self, x: Floats) -> Floats:
         """Return the deviations from what is known of the parameters otherwise, as if it had been measured."""

@@ -97,7 +97,7 @@ def _density(model: Model, found: Found, known: Uncertainty, least: float) -> Ca
 
     def density(at: Floats) -> float:
         x, noise = at[:count], float(at[count:].sum())  # 0 where it is stated: deviations are in its units
-        deviations = model.deviations(x)
+        deviations = model.point(x).deviations
         if (at.size > count and noise < lowest) or not np.isfinite(deviations).all():
             return -np.inf
         r, others = white(deviations[:points]), deviations[points:] / (model.noise or 1.0)

@@ -6,7 +6,6 @@ are differences.
 
 from collections.abc import Callable
 from contextlib import suppress
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,15 +23,6 @@ _JUMP = 0.5  # ratio of the differences to both sides of x, beyond which one of 
 _MODULUS = "material.modulus"
 _TOLD = {OFFSET: "stiffness", _MODULUS: "modulus", "material.effective_modulus": "modulus", "adhesion.work": "work"}
 """Keys by which a law tells its derivatives, and their names in ``Slopes``."""
-
-
-class Jumps(NamedTuple):
-    """Where the contact is made and lost along the path, in order."""
-
-    control: Floats
-    """[m]"""
-    slopes: Floats
-    """Derivatives [jump, parameter] of the control."""
 
 
 def slopes_of(model: Model, x: Floats) -> Floats:
@@ -64,10 +54,10 @@ def yielded(model: Model, x: Floats, change: Floats) -> Floats:
         return _spring(model, x, model.slopes(x, law.rule)).yielded(change)
 
 
-def jumps_at(model: Model, x: Floats) -> Jumps | None:
-    """Return where the contact is made and lost; None where it is not, or the law nearby has other jumps."""
+def slopes_of_jumps(model: Model, x: Floats) -> Floats | None:
+    """Return the derivatives [jump, parameter] of where the law jumps [m]; None where none or others are nearby."""
     middle, found = model.point(x), list[Floats]()
-    here, known = middle.law.changes.control, model.slopes_of_jumps(x)
+    here, known = middle.law.changes.control, model.slopes_at_jumps(x)
 
     def control(side: Point) -> Floats:
         there = side.law.changes.control
@@ -77,7 +67,7 @@ def jumps_at(model: Model, x: Floats) -> Jumps | None:
         for number, p in enumerate(model.parameters if here.size else ()):
             told = np.zeros_like(here) if p.key in (BASELINE, BASELINE_SLOPE) else _told(model, p, known)
             found.append(_slope(model, middle, number, control) if told is None else told)
-        return Jumps(here, np.stack(found, axis=1)) if found else None
+        return np.stack(found, axis=1) if found else None
     return None
 
 
@@ -100,9 +90,8 @@ def _slope(model: Model, middle: Point, number: int, of: Callable[[Point], Float
     low, high = model.bounds
     step = min(_step(middle), 0.5 * float(high[number] - low[number]))  # to one side at least it stays within bounds
     change = step * np.eye(middle.x.size)[number]
-    return _difference(
-        model, of(middle), [of(model.point(middle.x + change)), of(model.point(middle.x - change))], step
-    )
+    sides = [of(model.point(side)) for side in (middle.x + change, middle.x - change)]
+    return _difference(model, of(middle), sides, step)
 
 
 def _told(model: Model, p: Parameter, slopes: Slopes | None) -> Floats | None:
