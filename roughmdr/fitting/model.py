@@ -69,7 +69,8 @@ class Model:
         self.parameters: list[Parameter] = free_parameters(free, scene, parse_toml(scene.toml), self.curve, known)
         self.baselines = baselines(self.parameters, self.curve)
         """Load per x of each parameter without contact [step, parameter]."""
-        self.bounds: tuple[Floats, Floats] = tuple(np.transpose([each.bounds for each in self.parameters]))
+        low, high = np.reshape([each.bounds for each in self.parameters], (-1, 2)).T
+        self.bounds = low, high
         self._is_plain = scene.interaction is None and not scene.unlike
         self.adheres = scene.work > 0.0
         self.jumps = scene.asperities.equal_heights and self.adheres
@@ -81,8 +82,7 @@ class Model:
         """How the load on a machine changes near the last parameters whose slopes were found; None where it jumps."""
         self.noise = 0.0 if curve.error is None else 1.0
         """Standard deviation of the noise in units of the deviations; priors count from when it is known."""
-        count = len(self.parameters)
-        self.begin, self.told = np.zeros(count), (np.empty((0, count)), np.empty(0))
+        self.begin, self.told = np.zeros_like(low), (np.empty((0, low.size)), np.empty(0))
         """Where the search begins, and what other curves tell: A x = b."""
         self.spread = np.eye(sum(each.prior is not None for each in self.parameters))
         """A square root of the covariance of what is known otherwise, by priors and by other curves."""

@@ -132,7 +132,7 @@ def farthest(direction: Floats, radius: float, edges: Edges) -> float:
     def nearest(multiple: float) -> Floats:
         return projected(np.exp(multiple) * direction, edges.sides, edges.ends)
 
-    low = float(np.log(0.5 * radius / float(np.linalg.norm(direction) or 1.0)))
+    low = float(np.log(0.5 * radius / (np.linalg.norm(direction) or 1.0)))
     high = low + _FARTHEST
     if np.linalg.norm(nearest(high)) > radius:
         high = brentq(lambda multiple: np.linalg.norm(nearest(multiple)) - radius, low, high)
