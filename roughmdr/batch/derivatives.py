@@ -11,8 +11,8 @@ from roughmdr.batch.realization import simulate_realization
 from roughmdr.errors import Fault, RoughmdrError, SceneError
 from roughmdr.loading.machine import MachinePath
 from roughmdr.numerics.arguments import Floats
-from roughmdr.scene import Scene, read
-from roughmdr.scene.keys import key_readers, must_be_positive, number_at, set_key
+from roughmdr.scene import Scene, with_numbers
+from roughmdr.scene.keys import key_readers, must_be_positive, number_at
 from roughmdr.scene.sweep import SECTIONS
 from roughmdr.schema.toml_text import parse_toml
 from roughmdr.schema.units import spelled_in_results
@@ -108,9 +108,7 @@ def _law(cell: Cell, names: list[str], scene: Scene) -> Floats:
 
 def _varied(cell: Cell, key: str, number: _Number, side: float) -> Scene:
     """Return the scene of a cell with a number changed by so many steps; SceneError where it does not allow that."""
-    table = parse_toml(cell.scene.toml)
-    set_key(table, key, number.value + side * _STEP * number.scale)
-    return read(table)
+    return with_numbers(cell.scene, {key: number.value + side * _STEP * number.scale})
 
 
 def _number(cell: Cell, key: str) -> _Number:

@@ -14,7 +14,7 @@ from roughmdr.ensemble.nodes import Rule
 from roughmdr.errors import OutOfRange
 from roughmdr.expected.compute import KERNEL_ERROR, as_ensemble, warnings_of
 from roughmdr.expected.converge import converge_at_kinks
-from roughmdr.expected.curve import branch_ends
+from roughmdr.expected.curve import branch_ends, quantities_at
 from roughmdr.expected.detached import PartialRule, sums_of
 from roughmdr.expected.node import MeanProblem, QuadratureNode, set_up
 from roughmdr.kernels.adhesion import Adhesion
@@ -38,6 +38,9 @@ class Changes(NamedTuple):
     """The steps after which they do."""
     control: Floats
     """The separation [m] there; of a fitted law the measured control."""
+    let_go: Floats
+    """Stretch [m] at which springs at the edge of a contact let go as it is lost, 0 where it is made; NaN under an
+    attraction with a range."""
 
 
 class Force(NamedTuple):
@@ -98,9 +101,14 @@ def expected_slopes(
     rows = (FORCE, RADIUS, STIFFNESS) if adheres else (FORCE, STIFFNESS)
     total, *_ = _sums(MeanProblem(source, path, effective_modulus, adhesion, rows), rule)
     force, stiffness, a = total[FORCE], total[STIFFNESS], total[RADIUS]
-    let_go = np.sqrt(2.0 * math.pi * a * adhesion.work / effective_modulus)
+    let_go = _let_go(a, effective_modulus, adhesion)
     work = 0.5 * (stiffness - 2.0 * effective_modulus * a) * let_go
     return Slopes(*(source.expected_count * each for each in (stiffness, force - work, work)))
+
+
+def _let_go(a: Floats, effective_modulus: float, adhesion: Adhesion) -> Floats:
+    """Return the stretch [m] at which springs at the edge of contacts of these radii [m] let go (H 44)."""
+    return np.asarray(np.sqrt(2.0 * math.pi * a * adhesion.work / effective_modulus))
 
 
 def _are_alike(source: Source) -> bool:
@@ -143,7 +151,7 @@ def _changes(path: LoadingPath, nodes: list[QuadratureNode], *, alike: bool) -> 
     """Return where nodes whose heights are all equal make and lose contact; those of drawn shapes make it together, and
     lose it one by one, which is no change.
     """
-    found = list[tuple[int, float]]()
+    found = list[tuple[int, float, float]]()
     fixed = [node for node in nodes if node.heights.all_equal and node.contact.kernels.adhesive]
     count = Counter(node.heights.origin for node in fixed)
     for node in fixed if alike else {node.heights.origin: node for node in fixed}.values():
@@ -152,10 +160,14 @@ def _changes(path: LoadingPath, nodes: list[QuadratureNode], *, alike: bool) -> 
         branch[own.step] = own.branch
         ways = np.diff(np.sign(branch))
         made = max(contact.onset, contact.depth[0] * (feet[0] - 1.0))
-        found += [(step, origin - made) for step in np.flatnonzero(ways > 0).tolist()]
-        if alike or count[origin] == 1:
-            lost = np.flatnonzero(ways < 0).tolist()
-            found += [(step, origin + contact.depth[0] * (1.0 - min(feet[: branch[step]]))) for step in lost]
+        touch = np.nan if contact.adhesion.cohesive else 0.0
+        found += [(step, origin - made, touch) for step in np.flatnonzero(ways > 0).tolist()]
+        for step in np.flatnonzero(ways < 0).tolist() if alike or count[origin] == 1 else ():
+            lowest = int(np.argmin(feet[: branch[step]]))
+            radius = contact.radius * quantities_at(contact, np.array(feet[lowest : lowest + 1]), lowest + 1, (RADIUS,))
+            last = touch + float(_let_go(radius, contact.effective_modulus, contact.adhesion)[0, 0])
+            found.append((step, origin + contact.depth[0] * (1.0 - feet[lowest]), last))
     rises = np.diff(path.separation)
     found.sort(key=lambda each: (each[0], rises[each[0]] * each[1]))
-    return Changes(np.array([step for step, _ in found], dtype=np.int64), np.array([place for _, place in found]))
+    steps, controls, let_go = np.reshape(found, (-1, 3)).T
+    return Changes(steps.astype(np.int64), controls, let_go)

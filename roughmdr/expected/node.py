@@ -141,7 +141,8 @@ def totals_of(
     Row ERROR is the error bound of the first of ``rows``, the force. The nodes are all that were set up together.
     """
     total, products = np.zeros((ROWS, separation.size)), 0
-    selected = np.isin(np.arange(separation.size), steps)
+    selected = np.zeros(separation.size, dtype=np.bool_)
+    selected[steps] = True
     stiffness_row = rows.index(STIFFNESS) if STIFFNESS in rows else -1
     found = np.zeros((len(rows) + 1, separation.size))
     for mean in {id(node.above): node.above for node in nodes if node.above is not None}.values():

@@ -150,4 +150,4 @@ def _dugdale(scene: Scene, near: Scene, free: list[str], model_of: Callable[[Sce
     values = [each if key == "range" else near.work / each for each in ranges] + [given.get(key)] * (key in given)
     scenes = [_with(near, {"model": "dugdale", "work": near.work, key: value}) for value in values]
     models = [model_of(each, [*free, f"adhesion.{key}"]) for each in scenes]
-    return min(models, key=lambda each: float(np.sum(np.square(each.deviations(np.append(start, 0.0))))))
+    return min(models, key=lambda each: each.point(np.append(start, 0.0)).cost)

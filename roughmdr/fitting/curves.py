@@ -131,7 +131,7 @@ def _fitted_alone(first: Model, command: str, measured: Any) -> Labelled:
 
 
 def _covariance(fit: Fitted) -> Floats:
-    return uncertainty(fit.model, fit.found).covariance
+    return uncertainty(fit.model, fit.found, fit.model.law(fit.found.x)).covariance
 
 
 def _tried(function: Callable[[Any], Any], item: Any) -> Any:

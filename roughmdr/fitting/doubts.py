@@ -28,7 +28,7 @@ _FAR_OFF = 2.0  # root mean square of deviations over their stated errors
 def doubts(model: Model, found: Found, known: Uncertainty) -> Iterator[str]:
     """Yield the doubts about a fit, in words."""
     parameters = model.parameters
-    groups = _alike(known.slopes)
+    groups = _alike(found.slopes)
     for group in groups:
         yield _told_apart(group, parameters, known)
     width = known.reach.max(axis=0)

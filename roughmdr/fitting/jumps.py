@@ -7,12 +7,11 @@ neighbouring intervals are tried.
 """
 
 from collections.abc import Iterator
-from typing import NamedTuple
 
 import numpy as np
 
 from roughmdr.fitting.model import Model, Point
-from roughmdr.fitting.slopes import slopes_of
+from roughmdr.fitting.slopes import slopes_of, slopes_of_jumps
 from roughmdr.numerics.arguments import Floats
 
 Interval = tuple[int, ...]
@@ -24,34 +23,13 @@ _NEWTON, _ITERATIONS, _HALVINGS = 4, 20, 8
 _LONGEST = 1.0  # longest change of x in an iteration
 _LESS = 1e-11  # relative decrease of the sum of squares below which iterations end
 _LEAST_GAIN = 1e-7  # relative decrease of the sum of squares by which another interval is better
-_LITTLE = 1e-6  # change of x in differences of the positions of jumps
 _FARTHEST = 2  # steps to the neighbours of an interval
-
-
-class Jumps(NamedTuple):
-    """Where the contact is made and lost along the path, in order."""
-
-    control: Floats
-    """[m]"""
-    slopes: Floats
-    """Derivatives [jump, parameter] of the control."""
-
-
-def jumps_at(model: Model, x: Floats) -> Jumps | None:
-    """Return where the contact is made and lost; None where the law, there or nearby, has no or other jumps."""
-    here = model.point(x).law.changes.control
-    changes = np.where(x + _LITTLE > model.bounds[1], -_LITTLE, _LITTLE)
-    found = [model.point_at(each).law.changes.control for each in x + np.diag(changes)] if here.size else []
-    if not found or any(each.size != here.size for each in found):
-        return None
-    return Jumps(here, np.stack([each - here for each in found], axis=1) / changes)
 
 
 def with_measured_jumps(model: Model, x: Floats) -> Floats:
     """Return the x nearest to one whose law jumps where the measured load changes most, or x where there is none."""
     point = model.point(x)
-    moved = nearest_in(model, point, _measured(model, point.jumps), jumps_at(model, x))
-    return x if moved is None else moved.x
+    return (nearest_in(model, point, _measured(model, point.jumps), slopes_of_jumps(model, x)) or point).x
 
 
 def least_squares_between(model: Model, x: Floats) -> Floats:
@@ -60,23 +38,19 @@ def least_squares_between(model: Model, x: Floats) -> Floats:
     The first two intervals are those of x and of the measured jumps; then neighbours of the best, until none is better.
     """
     starts = (x, with_measured_jumps(model, x))
-    best = min((_least(model, model.point(each)) for each in starts), key=_cost)
+    best = min((_least(model, model.point(each)) for each in starts), key=lambda each: each.cost)
     tried = {best.jumps, model.point(x).jumps}
     while True:
         better, left = best, np.linalg.svd(slopes_of(model, best.x), full_matrices=False)[0]
-        places = jumps_at(model, best.x)
+        by_each = slopes_of_jumps(model, best.x)
         for interval in _neighbours(best.jumps):
-            point = None if interval in tried else nearest_in(model, best, interval, places)
-            if point is not None and _cost(point) - np.sum(np.square(left.T @ point.deviations)) < _cost(better):
-                better = min(better, _least(model, point), key=_cost)
+            point = None if interval in tried else nearest_in(model, best, interval, by_each)
+            if point is not None and point.cost - np.sum(np.square(left.T @ point.deviations)) < better.cost:
+                better = min(better, _least(model, point), key=lambda each: each.cost)
             tried.add(interval)
-        if _cost(better) > (1.0 - _LEAST_GAIN) * _cost(best):
+        if better.cost > (1.0 - _LEAST_GAIN) * best.cost:
             return best.x
         best = better
-
-
-def _cost(point: Point) -> float:
-    return float(np.sum(np.square(point.deviations)))
 
 
 def _measured(model: Model, jumps: Interval) -> Interval:
@@ -99,17 +73,17 @@ def _neighbours(interval: Interval) -> Iterator[Interval]:
         yield tuple((np.array(interval) + change).tolist())
 
 
-def nearest_in(model: Model, point: Point, interval: Interval, jumps: Jumps | None) -> Point | None:
-    """Return the point of an interval that is nearest by Newton's method, whose derivatives stay as ``jumps`` has them;
-    None where it finds none.
+def nearest_in(model: Model, point: Point, interval: Interval, by_each: Floats | None) -> Point | None:
+    """Return the point of an interval that is nearest by Newton's method, with the slopes of jumps that the first point
+    has; None where it finds none.
     """
     (low, high), widths = model.bounds, np.diff(model.curve.values)
     if not all(0 <= step < widths.size and widths[step] for step in interval):
         return None
     for _ in range(_NEWTON):
-        if jumps is None or jumps.control.size != len(interval):
+        if by_each is None or point.law.changes.control.size != len(interval):
             return None
-        places, slopes = places_of(model, interval, jumps)
+        places, slopes = places_of(model, interval, point, by_each)
         sides, ends = np.concatenate([slopes, -slopes]), np.concatenate([1.0 - places, places]) - 2.0 * _INSIDE
         step = projected(np.zeros(point.x.size), sides, ends)
         if not (sides @ step < ends + _INSIDE).all():
@@ -117,24 +91,23 @@ def nearest_in(model: Model, point: Point, interval: Interval, jumps: Jumps | No
         point = model.point(np.clip(point.x + step, low, high))
         if point.jumps == interval:
             return point
-        jumps = jumps._replace(control=point.law.changes.control)
     return None
 
 
-def places_of(model: Model, interval: Interval, jumps: Jumps) -> tuple[Floats, Floats]:
+def places_of(model: Model, interval: Interval, point: Point, by_each: Floats) -> tuple[Floats, Floats]:
     """Return the positions of jumps, from 0 to 1 in an interval, and their derivatives [jump, parameter]."""
     begin, width = model.curve.values[list(interval)], np.diff(model.curve.values)[list(interval)]
-    return (jumps.control - begin) / width, jumps.slopes / width[:, None]
+    return (point.law.changes.control - begin) / width, by_each / width[:, None]
 
 
 def _least(model: Model, point: Point) -> Point:
     """Return the least squares in the interval of a point."""
     for _ in range(_ITERATIONS):
-        before, trial = _cost(point), _improved(model, point)
+        before, trial = point.cost, _improved(model, point)
         if trial is None:
             return point
         point = trial
-        if _cost(point) > (1.0 - _LESS) * before:
+        if point.cost > (1.0 - _LESS) * before:
             break
     return point
 
@@ -147,23 +120,21 @@ def _improved(model: Model, point: Point) -> Point | None:
     axes, goal = right.T / np.maximum(sizes, _FLAT * sizes[0]), -left.T @ point.deviations
     low, high = model.bounds
     sides, ends = [np.eye(point.x.size), -np.eye(point.x.size)], [high - point.x, point.x - low]
-    for edged in (False, True):
-        jumps = jumps_at(model, point.x) if edged else None
-        if jumps is not None:
-            places, slopes = places_of(model, point.jumps, jumps)
-            sides, ends = [*sides, slopes, -slopes], [*ends, 1.0 - _INSIDE - places, places - _INSIDE]
-        u = projected(goal, np.concatenate(sides) @ axes, np.maximum(np.concatenate(ends), 0.0))
-        if _cost(point) * _LESS > goal @ goal - (goal - u) @ (goal - u):
-            return None
-        ahead = axes @ u
-        ahead /= max(np.abs(ahead).max() / _LONGEST, 1.0)
-        for _ in range(_HALVINGS if edged else 1):
-            trial = model.point(point.x + ahead)
-            if edged and trial.jumps != point.jumps:
-                trial = nearest_in(model, trial, point.jumps, jumps_at(model, trial.x)) or point
-            if trial.jumps == point.jumps and _cost(trial) < _cost(point):
-                return trial
-            ahead = 0.5 * ahead
+    if (by_each := slopes_of_jumps(model, point.x)) is not None:
+        places, slopes = places_of(model, point.jumps, point, by_each)
+        sides, ends = [*sides, slopes, -slopes], [*ends, 1.0 - _INSIDE - places, places - _INSIDE]
+    u = projected(goal, np.concatenate(sides) @ axes, np.maximum(np.concatenate(ends), 0.0))
+    if point.cost * _LESS > goal @ goal - (goal - u) @ (goal - u):
+        return None
+    ahead = axes @ u
+    ahead /= max(np.abs(ahead).max() / _LONGEST, 1.0)
+    for _ in range(_HALVINGS):
+        trial = model.point(np.clip(point.x + ahead, low, high))
+        if trial.jumps != point.jumps:
+            trial = nearest_in(model, trial, point.jumps, slopes_of_jumps(model, trial.x)) or point
+        if trial.jumps == point.jumps and trial.cost < point.cost:
+            return trial
+        ahead = 0.5 * ahead
     return None
 
 

@@ -142,13 +142,18 @@ def _check_names(columns: Columns, allowed: tuple[str, ...]) -> None:
 def _read(columns: Columns, name: str) -> Floats:
     """Return a column in SI; StoreError for an entry that is no finite number, or an error that is not above 0."""
     position, dimension = columns.names.index(name), MEASURED[name]
-    unit, values = columns.units[position], np.empty(len(columns.rows))
-    for i, (place, entries) in enumerate(columns.rows):
-        where = f"{columns.origin}: {place}: {name} = {short_repr(entries[position])}"
+    unit, entries = columns.units[position], [row[position] for _, row in columns.rows]
+    is_si = unit_factor(unit, dimension) == 1
+    values = np.array([each if is_si and isinstance(each, float) else np.nan for each in entries])
+
+    def wrong(i: int, reason: str) -> StoreError:
+        return StoreError(f"{columns.origin}: {columns.rows[i][0]}: {name} = {short_repr(entries[i])}: {reason}")
+
+    for i in np.flatnonzero(~np.isfinite(values)).tolist():
         try:
-            values[i] = quantity(f"{entries[position]} {unit}", dimension)
+            values[i] = quantity(f"{entries[i]} {unit}", dimension)
         except RoughmdrError as error:
-            raise StoreError(f"{where}: {error}") from None
-        if name.endswith("_error") and not values[i] > 0.0:
-            raise StoreError(f"{where}: must be above 0")
+            raise wrong(i, str(error)) from None
+    if name.endswith("_error") and not (values > 0.0).all():
+        raise wrong(int(np.argmin(values > 0.0)), "must be above 0")
     return values

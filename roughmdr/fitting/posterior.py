@@ -86,7 +86,7 @@ def _density(model: Model, found: Found, known: Uncertainty, least: float) -> Ca
     """Return the logarithm of the density of the posterior but for a constant, of x and the logarithm of the noise,
     whose ``least`` is in units of the deviations.
     """
-    (low, high), points, count, rho = model.bounds, found.points, found.x.size, known.noise.rho
+    points, count, rho = found.points, found.x.size, known.noise.rho
 
     def white(each: Floats) -> Floats:
         return np.append(each[0], (each[1:] - rho * each[:-1]) / np.sqrt(1.0 - rho * rho))
@@ -97,7 +97,7 @@ def _density(model: Model, found: Found, known: Uncertainty, least: float) -> Ca
 
     def density(at: Floats) -> float:
         x, noise = at[:count], float(at[count:].sum())  # 0 where it is stated: deviations are in its units
-        deviations = model.deviations(x) if ((low <= x) & (x <= high)).all() else np.full(points, np.inf)
+        deviations = model.point(x).deviations
         if (at.size > count and noise < lowest) or not np.isfinite(deviations).all():
             return -np.inf
         r, others = white(deviations[:points]), deviations[points:] / (model.noise or 1.0)

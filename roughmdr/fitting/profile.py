@@ -9,9 +9,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from roughmdr.fitting.jumps import jumps_at, nearest_in, places_of, projected
+from roughmdr.fitting.jumps import nearest_in, places_of, projected
 from roughmdr.fitting.model import Model
 from roughmdr.fitting.search import Found
+from roughmdr.fitting.slopes import slopes_of_jumps
 from roughmdr.numerics.arguments import Floats
 
 _OFF = 0.2  # deviation of the increase of the sum of squares from that of the parabola, over the latter
@@ -38,7 +39,7 @@ def profiled(model: Model, found: Found, inverse: Floats, reach: Floats) -> Floa
             increase = float(width * width / covariance[i, i])
             ahead = (-1.0, 1.0)[side] * width * covariance[i] / covariance[i, i]
             there = np.clip(found.x + ahead, *model.bounds)
-            off = abs(float(np.sum(np.square(model.deviations(there)))) - least - increase)
+            off = abs(model.point(there).cost - least - increase)
             if not (off < _OFF * increase or is_apart(there)):
                 end = _end(model, found, i, ahead, (least + increase, _MET * increase))
                 if end is not None and not is_apart(end):
@@ -56,7 +57,7 @@ def _end(model: Model, found: Found, i: int, ahead: Floats, goal: tuple[float, f
     step = ahead
     for _ in range(_ITERATIONS):
         trial = np.clip(x + step * min(longest / np.abs(step).max(), 1.0), low, high)
-        deviations = model.deviations(trial)
+        deviations = model.point(trial).deviations
         if not np.isfinite(deviations).all():
             longest *= 0.5
             continue
@@ -79,8 +80,9 @@ def _end(model: Model, found: Found, i: int, ahead: Floats, goal: tuple[float, f
 
 
 _CERTAIN = 25.0  # least increase of the sum of squares beyond an edge, over the variance of the noise: five deviations
-_BISECTIONS = 50  # halvings in the search for the multiple of a direction
-_LARGEST = 1e9  # largest such multiple, over the least that may be long enough
+_FARTHEST = float(
+    np.log(1e9)
+)  # largest logarithm of the multiple of a direction over the least that may be long enough
 
 
 class Edges(NamedTuple):
@@ -97,21 +99,21 @@ class Edges(NamedTuple):
 def certain_edges(model: Model, found: Found) -> Edges:
     """Return the edges of the interval between jumps beyond which the law misses a load by much more than the noise."""
     here, edges, certain = model.point(found.x), list[tuple[Floats, float]](), True
-    jumps = jumps_at(model, found.x) if model.jumps else None
+    by_each = slopes_of_jumps(model, found.x) if model.jumps else None
     left = np.linalg.svd(found.slopes, full_matrices=False)[0]
     least = float(np.sum(np.square(found.deviations)))
     noise = float(np.mean(np.square(found.residuals))) if model.curve.error is None else 1.0
-    if jumps is not None:
-        places, slopes = places_of(model, here.jumps, jumps)
+    if by_each is not None:
+        places, slopes = places_of(model, here.jumps, here, by_each)
         ends = np.stack([places, 1.0 - places])
         for (side, jump), end in np.ndenumerate(np.maximum(ends, 0.0)):
             sign = (-1, 1)[side]
             next_one = np.array(here.jumps) + sign * (np.arange(places.size) == jump)
-            beyond = nearest_in(model, here, tuple(next_one.tolist()), jumps)
+            beyond = nearest_in(model, here, tuple(next_one.tolist()), by_each)
             if beyond is None:
                 continue
             # the least that parameters can reach there if the law is linear in them
-            squares = np.sum(np.square(beyond.deviations)) - np.sum(np.square(left.T @ beyond.deviations))
+            squares = beyond.cost - np.sum(np.square(left.T @ beyond.deviations))
             if squares - least > _CERTAIN * noise:
                 edges.append((sign * slopes[jump], end))
             else:
@@ -125,10 +127,13 @@ def farthest(direction: Floats, radius: float, edges: Edges) -> float:
 
     It is the point within the edges that is nearest to some multiple of the direction, and grows with that.
     """
-    low = 0.5 * radius / float(np.linalg.norm(direction) or 1.0)
-    high = _LARGEST * low
-    for _ in range(_BISECTIONS):
-        middle = float(np.sqrt(low * high))
-        nearest = projected(middle * direction, edges.sides, edges.ends)
-        low, high = (low, middle) if np.linalg.norm(nearest) > radius else (middle, high)
-    return float(direction @ projected(low * direction, edges.sides, edges.ends))
+    from scipy.optimize import brentq
+
+    def nearest(multiple: float) -> Floats:
+        return projected(np.exp(multiple) * direction, edges.sides, edges.ends)
+
+    low = float(np.log(0.5 * radius / (np.linalg.norm(direction) or 1.0)))
+    high = low + _FARTHEST
+    if np.linalg.norm(nearest(high)) > radius:
+        high = brentq(lambda multiple: np.linalg.norm(nearest(multiple)) - radius, low, high)
+    return float(direction @ nearest(high))

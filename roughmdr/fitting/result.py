@@ -34,10 +34,10 @@ _CONTROLS = {"separation": "separation", "remote": "position of the far end of t
 def assembled(command: str, fit: Fitted, *, posterior: bool = False) -> Labelled:
     """Return the result of a search with its uncertainty, and draws from the posterior where they are asked for."""
     started, (model, found, compared, undecided) = time.perf_counter(), fit
-    known = uncertainty(model, found)
+    scene, law, curve = model.fitted(found.x), model.law(found.x), model.curve
+    known = uncertainty(model, found, law)
     draws = posterior_of(model, found, known) if posterior else None
     seconds = model.seconds + time.perf_counter() - started
-    law, scene, curve = model.law(found.x), model.fitted(found.x), model.curve
     variables: dict[str, Array] = {}
     for i, parameter in enumerate(model.parameters):
         variables |= _of_parameter(parameter, i, found, known)

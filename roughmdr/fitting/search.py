@@ -73,9 +73,9 @@ def _from_all_starts(model: Model) -> Found:
         with model.held(load=model.curve.load):
             near = _search(model)
         found = _follow(model, near.x)
-    if model.jumps and _cost(found) > 0.0 and found.slopes.any():
+    if model.jumps and found.deviations.any() and found.slopes.any():
         x = least_squares_between(model, found.x)
-        found = found._replace(x=x, deviations=model.deviations(x), slopes=slopes_of(model, x))
+        found = found._replace(x=x, deviations=model.point(x).deviations, slopes=slopes_of(model, x))
     model.curve = model.curve._replace(level=model.baseline(found.x))
     return found
 
@@ -83,32 +83,31 @@ def _from_all_starts(model: Model) -> Found:
 def _search(model: Model) -> Found:
     start = model.begin
     first = with_measured_jumps(model, start) if model.jumps and model.borne is None else start
-    found = [_follow(model, first)] if np.isfinite(model.deviations(first)).all() else []
+    found = [_follow(model, first)] if np.isfinite(model.point(first).cost) else []
     if not found or is_systematic(found[0].residuals) or model.curve.relative_rms(found[0].deviations) > POOR:
         starts = np.concatenate([_other_starts(model), start[None]]) if first.any() else _other_starts(model)
-        costs = [float(np.sum(np.square(model.deviations(x)))) for x in starts]
+        costs = [model.point(x).cost for x in starts]
         best = [starts[i] for i in np.argsort(costs)[:_TRIED] if np.isfinite(costs[i])]
         if not best and not found:
             raise model.last_error
         found += [_follow(model, x) for x in best]
-    return min(found, key=_cost)
-
-
-def _cost(found: Found) -> float:
-    return float(np.sum(np.square(found.deviations)))
+    return min(found, key=lambda each: float(each.deviations @ each.deviations))
 
 
 def _follow(model: Model, start: Floats) -> Found:
     """Return where least squares lead to from a start; RoughmdrError where that has no law."""
     from scipy.optimize import least_squares
 
-    points, deviations = model.curve.load.size, model.deviations(start)
-    if not np.isfinite(deviations).all():
+    def deviations(x: Floats) -> Floats:
+        return model.point(x).deviations
+
+    points, first = model.curve.load.size, deviations(start)
+    if not np.isfinite(first).all():
         raise model.last_error
     if not start.size:
-        return Found(start, deviations, np.empty((points, 0)), True, points)
+        return Found(start, first, np.empty((points, 0)), True, points)
     begin, slopes = np.clip(start, *model.bounds), partial(slopes_of, model)
-    result: Any = least_squares(model.deviations, begin, slopes, model.bounds, **_UNTIL)
+    result: Any = least_squares(deviations, begin, slopes, model.bounds, **_UNTIL)
     return Found(result.x, result.fun, result.jac, result.status > 0, points)
 
 

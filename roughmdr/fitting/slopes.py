@@ -4,9 +4,13 @@ The law itself tells those by the two bodies and by the zero of the control, unl
 are differences.
 """
 
+from collections.abc import Callable
+from contextlib import suppress
+
 import numpy as np
 from numpy.typing import NDArray
 
+from roughmdr.errors import RoughmdrError
 from roughmdr.expected import Slopes
 from roughmdr.expected.compute import KERNEL_ERROR
 from roughmdr.fitting.model import Model, Point
@@ -50,39 +54,54 @@ def yielded(model: Model, x: Floats, change: Floats) -> Floats:
         return _spring(model, x, model.slopes(x, law.rule)).yielded(change)
 
 
+def slopes_of_jumps(model: Model, x: Floats) -> Floats | None:
+    """Return the derivatives [jump, parameter] of where the law jumps [m]; None where none or others are nearby."""
+    middle, found = model.point(x), list[Floats]()
+    here, known = middle.law.changes.control, model.slopes_at_jumps(x)
+
+    def control(side: Point) -> Floats:
+        there = side.law.changes.control
+        return there if there.size == here.size else np.full_like(here, np.inf)
+
+    with model.held(load=model.borne, rule=middle.law.rule), suppress(RoughmdrError):
+        for number, p in enumerate(model.parameters if here.size else ()):
+            told = np.zeros_like(here) if p.key in (BASELINE, BASELINE_SLOPE) else _told(model, p, known)
+            found.append(_slope(model, middle, number, control) if told is None else told)
+        return np.stack(found, axis=1) if found else None
+    return None
+
+
 def _at_given(model: Model, middle: Point, slopes: Slopes | None) -> Floats:
     """Return the derivatives of the deviations where the load that stretches a spring stays."""
+
+    def slope(number: int, p: Parameter, prior: Floats) -> Floats:
+        beside = p.key in (BASELINE, BASELINE_SLOPE) and model.borne is not model.curve.load
+        load = model.baselines[:, number] if beside else _told(model, p, slopes)
+        if load is None:
+            return _slope(model, middle, number, lambda side: side.deviations)
+        return np.append(load / model.curve.weight, prior)
+
+    columns = zip(range(middle.x.size), model.parameters, _of_priors(model, middle.x).T, strict=True)
+    return np.stack([slope(*each) for each in columns], axis=1)
+
+
+def _slope(model: Model, middle: Point, number: int, of: Callable[[Point], Floats]) -> Floats:
+    """Return the derivative of what a law has with respect to a parameter."""
     low, high = model.bounds
-    steps = np.minimum(_step(middle), 0.5 * (high - low))  # to one side at least they stay within the bounds
-
-    def side(direction: Floats) -> Floats:
-        x = middle.x + steps * direction
-        inside = (low <= x) & (x <= high) | (direction == 0.0)
-        return model.point_at(x).deviations if inside.all() else np.full_like(middle.deviations, np.inf)
-
-    def slope(number: int) -> Floats:
-        direction, step = np.eye(middle.x.size)[number], float(steps[number])
-        return _difference(model, middle.deviations, [side(direction), side(-direction)], step)
-
-    known = _from_the_law(model, middle, slopes)
-    return np.stack([slope(i) if each is None else each for i, each in enumerate(known)], axis=1)
+    step = min(_step(middle), 0.5 * float(high[number] - low[number]))  # to one side at least it stays within bounds
+    change = step * np.eye(middle.x.size)[number]
+    sides = [of(model.point(side)) for side in (middle.x + change, middle.x - change)]
+    return _difference(model, of(middle), sides, step)
 
 
-def _from_the_law(model: Model, middle: Point, slopes: Slopes | None) -> list[Floats | None]:
-    """Return the derivatives of the deviations that need no differences; None for others."""
-
-    def change(number: int, p: Parameter) -> Floats | None:
-        if p.key in (BASELINE, BASELINE_SLOPE) and model.borne is not model.curve.load:
-            return model.baselines[:, number]
-        if slopes is None or p.key not in _TOLD or (p.key == _MODULUS and model.start.counter is not None):
-            return None
-        if p.key == OFFSET:
-            return -p.scale * slopes.stiffness
-        return getattr(slopes, _TOLD[p.key]) if p.logarithmic else None
-
-    changes = [change(*each) for each in enumerate(model.parameters)]
-    pairs = zip(changes, _of_priors(model, middle.x).T, strict=True)
-    return [None if each is None else np.append(each / model.curve.weight, prior) for each, prior in pairs]
+def _told(model: Model, p: Parameter, slopes: Slopes | None) -> Floats | None:
+    """Return the derivative with respect to a parameter that the law tells; None for others."""
+    if slopes is None or p.key not in _TOLD or (p.key == _MODULUS and model.start.counter is not None):
+        return None
+    if p.key == OFFSET:
+        return -p.scale * slopes.stiffness
+    told: Floats = getattr(slopes, _TOLD[p.key])
+    return told if p.logarithmic and not np.isnan(told).any() else None
 
 
 def _of_priors(model: Model, x: Floats) -> Floats:

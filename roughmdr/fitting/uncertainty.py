@@ -5,6 +5,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from roughmdr.aggregate import LoadSeparation
 from roughmdr.errors import OutOfRange
 from roughmdr.fitting.correlation import (
     POOR,
@@ -43,8 +44,6 @@ class Uncertainty(NamedTuple):
     """Shift of each x by a standard deviation of each step, [parameter, step]; last, along what no step determines."""
     by_even_noise: Floats
     """Such shifts by equal noise at all steps: they show which parameters the curve can tell apart at all."""
-    slopes: Floats
-    """Derivative of the law with respect to each x, [step, parameter]."""
     noise: Correlation
     """Correlation of the noise of neighbouring steps."""
     reach: Floats
@@ -75,8 +74,8 @@ def correlation_of(influence: Floats) -> Floats:
     return np.asarray(correlation)
 
 
-def uncertainty(model: Model, found: Found) -> Uncertainty:
-    """Return the uncertainty at the parameters of least squares.
+def uncertainty(model: Model, found: Found, law: LoadSeparation) -> Uncertainty:
+    """Return the uncertainty at the parameters of least squares, where the law is ``law``.
 
     With a standard deviation of each load it follows from these, by the normal distribution. Without, the variance of
     each step is that of the residuals near it, for noise that is constant, proportional or otherwise uneven, with
@@ -110,9 +109,10 @@ def uncertainty(model: Model, found: Found) -> Uncertainty:
     reach = _reach(influence, quantile, edges)
     stays = reach < (1.0 - _ROUNDING) * quantile * np.linalg.norm(influence, axis=1)
     ends = profiled(model, found, inverse, np.where(stays | (not edges.certain), -reach, reach))
-    error = _error_of_law(model, found)
+    at_given = law.model_error.curve * law.variables[model.curve.quantity]  # separation
+    error = yielded(model, found.x, at_given) / model.curve.weight if np.isfinite(law.model_error.curve).all() else None
     shift = None if error is None else np.abs(inverse[:, :points] @ error)
-    return Uncertainty(influence, inverse, slopes, noise, ends, (ends != reach).any(axis=0), shift, error)
+    return Uncertainty(influence, inverse, noise, ends, (ends != reach).any(axis=0), shift, error)
 
 
 def apart_from_the_rest(
@@ -230,13 +230,3 @@ def by_residuals(inverse: Floats, left: Floats, residuals: Floats, rho: float = 
     ]
     freedom = np.maximum(np.square(trace) / np.array(trace_of_square), 1.0)
     return by_independent_noise(inverse * np.sqrt(variance), rho), freedom
-
-
-def _error_of_law(model: Model, found: Found) -> Floats | None:
-    """Return the error of the law at the measured control [step], weighted; None where the law tells none."""
-    law = model.law(found.x)
-    curve = law.model_error.curve
-    if not np.isfinite(curve).all():
-        return None
-    error = curve * law.variables[model.curve.quantity]  # at given separation
-    return np.asarray(yielded(model, found.x, error) / model.curve.weight)

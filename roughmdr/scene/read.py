@@ -1,11 +1,12 @@
 """Reading a scene from a TOML file, a result or a dictionary; every fault is found before anything is computed."""
 
+import copy
 import os
 import re
 from collections.abc import Callable, Iterable, Mapping
 from functools import partial
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, cast
 
 from roughmdr.errors import Fault, RoughmdrError, SceneError
 from roughmdr.scene.cells import validate
@@ -62,6 +63,25 @@ def read(
     known = source._locate if isinstance(source, Scene) and not applied else None
     scene._locate = known or partial(_add_location, label=label, lines=lines, applied=applied)
     return scene
+
+
+def with_numbers(scene: Scene, numbers: Mapping[str, float]) -> Scene:
+    """Return a validated scene without a sweep with other numbers [SI] of dotted keys; SceneError as ``read``.
+
+    Only the sections that hold them are validated anew, and what must agree between sections.
+    """
+    table, names = dict(scene._table), {key.split(".")[0] for key in numbers}
+    table |= {name: copy.deepcopy(table[name]) for name in names}
+    for key, number in numbers.items():
+        set_key(table, key, number)
+    try:
+        sections = {name: type(getattr(scene, name)).model_validate(table[name]) for name in names}
+        changed: Any = scene.model_copy(update=sections)
+        changed._sections_agree()
+    except ValueError:
+        return read(table)
+    changed._table = table
+    return cast(Scene, changed)
 
 
 def _read_table(source: object) -> tuple[Path | None, str, str, dict[str, Any]]:

@@ -91,7 +91,7 @@ def test_slopes_are_differences_of_the_law(case: str) -> None:
     assert model.evaluations == before + laws
     assert found.shape[0] == len(measured) + 1
     for number in range(x.size):
-        exact = difference(lambda x: model.point_at(x).deviations, number, x, 1e-3)
+        exact = difference(lambda x: model.point(x).deviations, number, x, 1e-3)
         assert found[:, number] == pytest.approx(exact, abs=2e-6 * np.abs(exact).max())
 
 
@@ -103,5 +103,5 @@ def test_slopes_on_a_machine_are_those_of_its_law(kind: str) -> None:
     x = np.array([0.1, -0.2, 0.1, 0.02, 0.03, 0.1][-len(free) :])
     found, model.near = slopes_of(model, x), None
     for number in range(x.size):
-        exact = difference(lambda x: model.point_at(x).deviations, number, x, 1e-3)
+        exact = difference(lambda x: model.point(x).deviations, number, x, 1e-3)
         assert found[:, number] == pytest.approx(exact, abs=2e-6 * np.abs(exact).max())
