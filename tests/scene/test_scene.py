@@ -27,7 +27,7 @@ def test_the_scene_of_the_demo() -> None:
     assert demo.seed == 2026
     assert demo.effective_modulus == rm.effective_modulus(3e6, 0.49)
     assert demo.work == 0.05
-    assert demo.batch.realizations == 10
+    assert demo.batch.realizations == 8
     assert demo.interaction is not None
     assert demo.path.starts_clear
     assert demo.path.target is not None
