@@ -83,7 +83,7 @@ def test_contact_is_made_and_lost_where_finer_steps_show_it(shape: dict[str, Any
     seen, drawn = set(), shape.get("radius") is DRAWN  # contacts of drawn shapes are lost one by one
     for seed in range(6):
         path = 1e-6 * np.cumsum(np.random.default_rng(seed).normal(0.0, 0.4, 40)) + 2e-7
-        force, _, (step, place), _ = law(path)
+        force, _, (step, place, _), _ = law(path)
         changed = np.flatnonzero(np.diff((force != 0.0).astype(int)))
         assert step.tolist() == changed[(force[changed + 1] != 0.0) | (not drawn)].tolist()
         for m, expected in zip(step.tolist(), place.tolist(), strict=True):

@@ -52,7 +52,7 @@ def test_slopes_are_those_of_the_law_on_its_machine(length: float, modulus: floa
     found = slopes_of(model, x)
     apart = model_on_machine(rough(length, modulus, unlike), remote)
     for number, direction in enumerate(np.eye(x.size)):
-        sides = [apart.point_at(x + sign * _STEP * direction).deviations for sign in (1.0, -1.0)]
+        sides = [apart.point(x + sign * _STEP * direction).deviations for sign in (1.0, -1.0)]
         exact = (sides[0] - sides[1]) / (2.0 * _STEP)
         assert found[:, number] == pytest.approx(exact, abs=3e-6 * np.abs(exact).max())
 
@@ -66,7 +66,7 @@ def test_loads_near_known_ones_are_those_of_the_machine() -> None:
     slopes_of(model, x)
     assert model.near is not None
     before = model.evaluations
-    near, exact = (each.point_at(x + 0.02).law.force for each in (model, apart))
+    near, exact = (each.point(x + 0.02).law.force for each in (model, apart))
     assert model.evaluations - before > 1  # by iteration, each time at given separations
     assert near == pytest.approx(exact, abs=1e-10 * np.abs(exact).max())
 
