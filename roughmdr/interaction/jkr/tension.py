@@ -13,7 +13,7 @@ from roughmdr.interaction.jkr.tangent import Tangent
 
 _MAX_ROUNDS = 30
 _SLOPE_RTOL = 1e-10  # error of the changes of loads of which the slope is the sum
-_SIGN_RTOL = 1e-5  # that where the sign of the slope is enough; the force would be off by its square
+_SIGN_RTOL = 1e-5  # error of these changes where the sign of the slope is enough: the force is off by its square
 _RTOL = 1e-7  # slope of the force at its minimum, relative; the value there is off by its square
 
 
