@@ -103,7 +103,7 @@ class RareAsperities:
         self._per_force = _per_force(cell)
         try:
             self._squares = [_squares(cell, stream) for stream in section.heavy_tailed_streams]
-        except (ArithmeticError, RuntimeError, ValueError):  # of scipy, whose inverses fail so far out:
+        except (ArithmeticError, RuntimeError, ValueError):  # inverses of scipy fail so far out:
             self._squares = []  # a run that meets such an asperity fails, and says so
 
     def spread(self, realizations: int) -> Floats:

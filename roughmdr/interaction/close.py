@@ -94,15 +94,23 @@ def punch_and_contact(s: float, a: float, excess: float, away: float) -> float:
 
 
 @njit
+def share_of(away: float, reach: float) -> tuple[float, float]:
+    """Return the share of a pair at a distance and its slope over the reach, the sum of both radii.
+
+    It is a polynomial with no slope at its ends.
+    """
+    u = min(max((NONE - away / reach) / (NONE - FULL), 0.0), 1.0)
+    return u * u * (3.0 - 2.0 * u), 6.0 * u * (1.0 - u) * away / (reach * reach * (NONE - FULL))
+
+
+@njit
 def update_shares(pairs: Pairs, radius: Floats) -> None:
-    """Set the share of each pair, by a polynomial with no slope at its ends."""
+    """Set the share of each pair."""
     for number in range(pairs.share.size):
         i, j = pairs.members[number]
         pairs.share[number] = 0.0
         if radius[i] > 0.0 or radius[j] > 0.0:
-            u = (NONE - pairs.apart[number, 2] / (radius[i] + radius[j])) / (NONE - FULL)
-            u = min(max(u, 0.0), 1.0)
-            pairs.share[number] = u * u * (3.0 - 2.0 * u)
+            pairs.share[number] = share_of(pairs.apart[number, 2], radius[i] + radius[j])[0]
 
 
 @njit

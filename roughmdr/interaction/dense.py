@@ -41,7 +41,7 @@ def _field_at(matrices: Floats, points: Integers, sources: Integers, load: Float
 def _of_moments_at(
     matrices: Floats, points: Integers, sources: Integers, laplacian: Floats, x: Floats, y: Floats, out: Floats
 ) -> None:
-    """Fill the displacement at points by sources of the Laplacian and of the slopes of G."""
+    """Add the displacement at points by sources of the Laplacian and of the slopes of G."""
     for i in points:
         for j in sources:
             out[i] += matrices[3, i, j] * laplacian[j] + matrices[1, i, j] * x[j] + matrices[2, i, j] * y[j]

@@ -89,7 +89,7 @@ def set_title(figure: "Figure", title: str, notes: Sequence[str] = ()) -> None:
     letters = int(_LETTERS_PER_INCH * figure.get_figwidth())
     title, notes = escape_controls(title), [escape_controls(note) for note in notes]
     figure.set_label("\n".join(notes))  # for users who write the title elsewhere
-    lines = ["; ".join([title, *notes])]
+    lines = ["; ".join(filter(None, [title, *notes]))]
     if len(lines[0]) > letters:
         lines = [line for each in (title, *notes) for line in textwrap.wrap(each, int(0.9 * letters))]
     figure.suptitle("\n".join(lines), fontsize=10, parse_math=False)

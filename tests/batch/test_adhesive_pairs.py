@@ -1,5 +1,6 @@
 """Scenes of asperities that adhere and feel each other: the whole way from the table to the file."""
 
+import tomllib
 import warnings
 from pathlib import Path
 from typing import Any
@@ -46,6 +47,18 @@ def test_energy_is_lost_at_jumps_only(tmp_path: Path) -> None:
     assert (first.avalanche_count > 0).all()
     assert (first.avalanche_size_max >= 1).all()
     assert float(first.marked_steps.max()) == 0.0
+
+
+@pytest.mark.large
+def test_the_demo_is_nearly_free_of_the_error_of_its_model() -> None:
+    """Independent, its asperities would be off by more than a tenth."""
+    demo = tomllib.loads((Path(__file__).parents[2] / "pipelines" / "scenes" / "rubber_on_glass.toml").read_text())
+    law = rm.run(demo | {"batch": {**demo["batch"], "realizations": 1}})
+    assert float(law.contact_fraction.max()) == pytest.approx(0.04, rel=0.1)
+    assert 0.0 < float(law.model_error_curve.max()) < 0.05
+    assert float(law.marked_steps.max()) == 0.0
+    alone = {key: value for key, value in demo.items() if key != "interaction"}
+    assert float(rm.run(alone | {"batch": {"estimator": "expected"}}).model_error_curve.max()) > 0.1
 
 
 @pytest.mark.large

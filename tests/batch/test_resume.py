@@ -457,7 +457,7 @@ def test_interrupted_twice_and_shorter_at_last(calls: Calls, out: Path, monkeypa
     assert {*calls.taken()} == {*every([work], 0, 6)} - {*done}
     assert_same(found, go(swept([work]), None))
     calls.taken()
-    assert_same(go(swept(WORKS), out), go(swept(WORKS), None))  # those of other cells were kept
+    assert_same(go(swept(WORKS), out), go(swept(WORKS), None))  # runs of other cells were kept
     anew = calls.taken()
     assert all(anew.count(run) == 2 - (run in done or run[0] == work) for run in RUNS)
     assert not store_folder(out).exists()

@@ -52,6 +52,17 @@ def test_the_mean_is_drawn_in_the_unit_of_the_axis(result: xr.Dataset) -> None:
 
 
 @pytest.mark.few(1)
+@pytest.mark.parametrize("title", ["Short", "", LONG])
+def test_a_title_takes_one_line_where_it_fits(without_adhesion: xr.Dataset, title: str) -> None:
+    figure = rm.plot(without_adhesion.assign_attrs(title=title), variables="force")
+    shown = str(figure.get_suptitle()).splitlines()
+    assert (len(shown) == 1) == (title is not LONG)
+    assert shown[0].startswith(title[:40])
+    assert not shown[0].startswith(";")
+    figure.draw_without_rendering()
+    assert figure._suptitle.get_window_extent().width < figure.bbox.width
+
+
 @pytest.mark.parametrize("keep", ["curves", "statistics"])
 def test_a_variable_over_another_and_per_area(keep: str) -> None:
     output = {"variables": ["force", "contact_area", "contact_count"], "keep": keep}

@@ -114,7 +114,7 @@ class MapWaves(NamedTuple):
     """A map as theories of rough surfaces need it: isotropic and Gaussian."""
 
     mean: float  # height [m]
-    moments: Moments  # of a profile, averaged over all directions
+    moments: Moments  # spectral moments of a profile, averaged over all directions
     spectrum: MapSpectrum | None  # None where points of the map are undefined
     short_wave: float  # [m]; two spacings, unless shorter waves were cut off
 
@@ -178,7 +178,7 @@ def _spectrum(surface: HeightMap, mean: float) -> MapSpectrum:
         height *= along_x[:, None] / np.sqrt(np.mean(along_x**2))
         height *= along_y / np.sqrt(np.mean(along_y**2))
     variance = np.abs(fft.rfft2(height, overwrite_x=True)) ** 2 / float(nx * ny) ** 2
-    variance[:, 1 : (ny + 1) // 2] *= 2.0  # of the waves of negative numbers along y too
+    variance[:, 1 : (ny + 1) // 2] *= 2.0  # waves of negative numbers along y count too
     q = 2.0 * np.pi * np.hypot(fft.fftfreq(nx, surface.dx)[:, None], fft.rfftfreq(ny, surface.dy))
     q, variance = q[q > 0.0], variance[q > 0.0]
     log_q = np.log(q / q.min())

@@ -62,7 +62,7 @@ def summits_on(surface: HeightMap, noise: float, detrend: str) -> Ensemble:
     radius, area = summits.parameters["radius"], summits.nominal_area or 0.0
     if not (np.isfinite(radius).all() and radius.min() > 0.0 and 0.0 < area < np.inf):
         raise RoughmdrError(f"no float can hold its radii, or its area, {area:g} m2: is its size right?")
-    smallest = float(radius.min())  # over which no mean curvature overflows
+    smallest = float(radius.min())  # no mean curvature over it overflows
     mean = smallest / float(np.mean(smallest / radius))
     return replace(summits, attrs={**summits.attrs, **map_statistics(surface), "mean_curvature_radius": mean})
 

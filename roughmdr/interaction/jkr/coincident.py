@@ -22,7 +22,6 @@ from numpy.typing import NDArray
 from scipy.special import i0e, i1e
 
 from roughmdr.interaction import close
-from roughmdr.interaction.close import FULL, NONE
 from roughmdr.interaction.interface import Asperities, CoupledKernels, kernel
 from roughmdr.numerics.arguments import Floats
 from roughmdr.numerics.jit import njit
@@ -119,13 +118,8 @@ def _share(apart: Floats, place: NDArray[np.int64], reach: Floats, share: Floats
     """
     for number in range(share.size):
         i, j = place[number]
-        whole, away = reach[0, i] + reach[0, j], apart[number, 2]
-        u = (NONE - away / whole) / (NONE - FULL)
-        if 0.0 < u < 1.0:
-            by_whole = away / (whole * whole) / (NONE - FULL)
-            rate[number] = -6.0 * u * (1.0 - u) * by_whole * (reach[1, i] + reach[1, j])
-        u = min(max(u, 0.0), 1.0)
-        share[number] = u * u * (3.0 - 2.0 * u)
+        share[number], by_reach = close.share_of(apart[number, 2], reach[0, i] + reach[0, j])
+        rate[number] = -by_reach * (reach[1, i] + reach[1, j])
 
 
 class Bells(NamedTuple):

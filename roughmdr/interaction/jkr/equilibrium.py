@@ -4,7 +4,7 @@ The energy is stationary over the loads and, in equilibrium, over the contact ra
 """
 
 import math
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field as member, replace
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -42,7 +42,7 @@ class PairProblem:
     """w/(E* L)."""
     natural: Floats
     """Stretches of the edge of lone contacts as they are made, by which errors are measured."""
-    _last: "tuple[NDArray[np.int64], PairProblem] | None" = field(default=None, init=False)
+    _last: "tuple[NDArray[np.int64], PairProblem] | None" = member(default=None, init=False)
 
     def part(self, kept: NDArray[np.int64]) -> "PairProblem":
         """Return the problem of some of the asperities, alone; that returned last is remembered."""
