@@ -14,7 +14,7 @@ import roughmdr as rm
 from roughmdr.cli import main
 from roughmdr.model_error.at_force import RELEASING
 from roughmdr.pictures.curves import Quantity, curves_of
-from roughmdr.pictures.style import BRANCH_COLOURS
+from roughmdr.pictures.style import BRANCH_COLOURS, new_figure, set_title
 from roughmdr.result.view import ResultView
 
 FEW = {**ASPERITIES, "count": 100}
@@ -53,14 +53,16 @@ def test_the_mean_is_drawn_in_the_unit_of_the_axis(result: xr.Dataset) -> None:
 
 @pytest.mark.few(1)
 @pytest.mark.parametrize("title", ["Short", "", LONG])
-def test_a_title_takes_one_line_where_it_fits(without_adhesion: xr.Dataset, title: str) -> None:
-    figure = rm.plot(without_adhesion.assign_attrs(title=title), variables="force")
-    shown = str(figure.get_suptitle()).splitlines()
-    assert (len(shown) == 1) == (title is not LONG)
-    assert shown[0].startswith(title[:40])
-    assert not shown[0].startswith(";")
-    figure.draw_without_rendering()
-    assert figure._suptitle.get_window_extent().width < figure.bbox.width
+def test_a_title_and_its_notes_take_one_line_where_they_fit(title: str) -> None:
+    figure, note = new_figure(10.0, 4.0), "model: force within about 1 %"
+    set_title(figure, title, ["8 realisations", note])
+    lines = str(figure.get_suptitle()).splitlines()
+    if title is LONG:
+        assert " ".join(lines[:-2]) == title.strip()
+        assert lines[-1] == note
+    else:
+        assert lines == [f"{title}; 8 realisations; {note}".removeprefix("; ")]
+    assert figure.texts[0].get_window_extent().width < figure.bbox.width
 
 
 @pytest.mark.parametrize("keep", ["curves", "statistics"])
