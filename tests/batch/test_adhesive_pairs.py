@@ -54,7 +54,7 @@ def test_the_demo_is_nearly_free_of_the_error_of_its_model() -> None:
     """Independent, its asperities would be off by more than a tenth."""
     demo = tomllib.loads((Path(__file__).parents[2] / "pipelines" / "scenes" / "rubber_on_glass.toml").read_text())
     law = rm.run(demo | {"batch": {**demo["batch"], "realizations": 1}})
-    assert float(law.contact_fraction.max()) == pytest.approx(0.04, rel=0.1)
+    assert float(law.contact_fraction.max()) == pytest.approx(0.03, rel=0.1)
     assert 0.0 < float(law.model_error_curve.max()) < 0.05
     assert float(law.marked_steps.max()) == 0.0
     alone = {key: value for key, value in demo.items() if key != "interaction"}

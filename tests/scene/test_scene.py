@@ -31,7 +31,7 @@ def test_the_scene_of_the_demo() -> None:
     assert demo.interaction is not None
     assert demo.path.starts_clear
     assert demo.path.target is not None
-    assert demo.path.target.contact_fraction == 0.04
+    assert demo.path.target.contact_fraction == 0.03
     np.testing.assert_allclose(demo.path.values(0.0, 7e-6, 1e-6), np.linspace(7e-6, 1e-6, 200), rtol=1e-15)
 
 
