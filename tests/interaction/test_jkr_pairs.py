@@ -10,6 +10,7 @@ import pytest
 from numpy.typing import NDArray
 
 from roughmdr.ensemble.ensemble import Ensemble
+from roughmdr.interaction.jkr import tension
 from roughmdr.interaction.jkr.account import Account, Adhering
 from roughmdr.interaction.jkr.equilibrium import Drive, PairProblem, State, Step, alone
 from roughmdr.interaction.jkr.front import Front, Piece
@@ -322,3 +323,29 @@ def test_a_path_of_a_large_patch_is_lost_at_no_fold() -> None:
     assert np.isfinite([step.error for step in found.steps]).all()
     assert sum(each.size for each in found.avalanches) >= 2 * max(step.contacts for step in found.steps)
     assert found.steps[-1].contacts == 0
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_the_largest_tension_is_looked_for_on_few_pieces(seed: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    rng, (risen, looked) = np.random.default_rng([seed, 9]), (list[Piece](), list[Piece]())
+    ensemble = placed(UNIT, rng.uniform(0.0, 16.0, (12, 2)), rng.normal(size=12))
+
+    def passing(self: tension.LargestTension, piece: Piece) -> None:
+        risen.append(piece)
+        pass_over(self, piece)
+
+    def looking(piece: Piece) -> tension.Tension:
+        looked.append(piece)
+        return largest_within(piece)
+
+    pass_over, largest_within = tension.LargestTension.pass_over, tension.largest_within
+    monkeypatch.setattr(tension.LargestTension, "pass_over", passing)
+    monkeypatch.setattr(tension, "largest_within", looking)
+    down = np.linspace(2.5, -1.5, 30)
+    found = follow(ensemble, UNIT, np.concatenate([down, np.linspace(-1.5, 6.0, 60)]), order=2).pull_off
+    everywhere = min(largest_within(piece) for piece in risen)
+    length = max(np.ptp(ensemble.positions["x"]), np.ptp(ensemble.positions["y"]))
+    assert found.contacts == everywhere.contacts
+    assert found.separation == pytest.approx(everywhere.separation * length, rel=1e-9, abs=1e-9 * UNIT.d0)
+    assert found.force < 0.0
+    assert 1 <= len(looked) < 0.2 * len(risen)

@@ -11,7 +11,7 @@ from roughmdr.interaction.jkr.equilibrium import State, alone, energy
 from roughmdr.interaction.jkr.front import Front, Piece
 from roughmdr.interaction.jkr.jumps import Avalanche
 from roughmdr.interaction.jkr.lone import MOST_SLIDE
-from roughmdr.interaction.jkr.tension import Tension, largest_between, slope
+from roughmdr.interaction.jkr.tension import LargestTension, slope
 from roughmdr.interaction.totals import Step, of_all, total
 from roughmdr.loading.pull_off import PullOff
 from roughmdr.numerics.arguments import Floats
@@ -55,7 +55,7 @@ class Account:
         self._steps, self._separation, self._avalanches = list[Step](), list[float](), list[Avalanche]()
         self._radius, self._force = np.zeros((2, front.total))
         self._at, self._closest, self._reach = at, math.inf, _STRETCH * reach
-        self._tension = Tension() if rises else None
+        self._tension = LargestTension() if rises else None
         self.dissipated = self.machine_dissipated = 0.0
         """By the avalanches, and by the jumps of the machine beside them [J]."""
         self._parted = False
@@ -72,8 +72,7 @@ class Account:
     def pass_over(self, piece: Piece) -> None:
         """Add a piece of the way: its avalanche, and its tension where the flat rises."""
         if self._tension is not None and piece.end.separation > piece.begin.separation:
-            fold = piece.event is not None and piece.event.kind == "fold"
-            self._tension = largest_between(piece.problem, piece.begin, piece.end, self._tension, fold=fold)
+            self._tension.pass_over(piece)
         if piece.avalanche is not None:
             separation, size, dissipated = piece.avalanche
             self.dissipated += dissipated * self.energy_unit
@@ -147,9 +146,9 @@ class Account:
 
     def _pull_off(self) -> PullOff:
         """Return the largest tension in SI; NaN where no unloading ends with all contacts parted."""
-        length, tension = self._length, self._tension
-        if tension is None or not self._parted:
+        if self._tension is None or not self._parted:
             return PullOff()
+        length, tension = self._length, self._tension.found()
         if tension.force == 0.0:
             return PullOff(0.0)
         area = math.pi * length * length * tension.radius_squares

@@ -8,6 +8,7 @@ import numpy as np
 from roughmdr.interaction.jkr.bracket import Bracket
 from roughmdr.interaction.jkr.equilibrium import Drive, PairProblem, State, alone, interpolated
 from roughmdr.interaction.jkr.factors import Factors
+from roughmdr.interaction.jkr.front import Piece
 from roughmdr.interaction.jkr.newton import newton
 from roughmdr.interaction.jkr.tangent import Tangent
 
@@ -40,25 +41,43 @@ def of_state(state: State) -> Tension:
     return Tension(math.fsum(state.load.tolist()), state.separation, int(state.inside.sum()), squares)
 
 
-def largest_between(problem: PairProblem, state: State, new: State, best: Tension, *, fold: bool) -> Tension:
-    """Return the largest tension on the path from a state to another with larger separation, or ``best``.
+class LargestTension:
+    """The largest tension while the flat rises; on pieces of the way it is looked for only where it may be."""
+
+    def __init__(self) -> None:
+        self.best = Tension()
+        """The largest at the ends of pieces so far."""
+        self._pieces = list[tuple[float, Piece]]()
+
+    def pass_over(self, piece: Piece) -> None:
+        """Add a piece on which the flat rises."""
+        first, last = of_state(piece.begin), of_state(piece.end)
+        self.best = min(self.best, first, last)
+        if first.contacts:
+            least = min(first.force, last.force) - abs(last.force - first.force)
+            self._pieces = [each for each in [*self._pieces, (least, piece)] if each[0] < self.best.force]
+
+    def found(self) -> Tension:
+        """Return it."""
+        best = self.best
+        for least, piece in sorted(self._pieces, key=lambda each: each[0]):
+            if least < best.force:
+                best = min(best, largest_within(piece))
+        return best
+
+
+def largest_within(piece: Piece) -> Tension:
+    """Return the largest tension on a piece on which the flat rises.
 
     No contact is made or lost on it. Where the force has its least value within, that is found by its slope.
     """
-    first, last = of_state(state), of_state(new)
-    best = min(best, last)
-    if (
-        not first.contacts
-        or not new.separation > state.separation
-        or min(first.force, last.force) - abs(last.force - first.force) > best.force
-    ):
-        return best
-    few, state = alone(problem, state)
+    best, (few, state) = min(of_state(piece.begin), of_state(piece.end)), alone(piece.problem, piece.begin)
     factors = Factors(few, state)
     low = slope(few, state, factors, _SIGN_RTOL)
     if not low < 0.0:
         return best
-    new = alone(problem, new)[1]
+    new = alone(piece.problem, piece.end)[1]
+    fold = piece.event is not None and piece.event.kind == "fold"
     high = abs(low) if fold else slope(few, new, factors, _SIGN_RTOL)  # at a fold it is infinite
     if not high > 0.0:
         return best
