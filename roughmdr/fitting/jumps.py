@@ -24,6 +24,7 @@ _LONGEST = 1.0  # longest change of x in an iteration
 _LESS = 1e-11  # relative decrease of the sum of squares below which iterations end
 _LEAST_GAIN = 1e-7  # relative decrease of the sum of squares by which another interval is better
 _FARTHEST = 2  # steps to the neighbours of an interval
+_UNCERTAIN = 4.0  # error of a load that is taken for that of the next step, over its change from step to step
 
 
 def with_measured_jumps(model: Model, x: Floats) -> Floats:
@@ -41,16 +42,44 @@ def least_squares_between(model: Model, x: Floats) -> Floats:
     best = min((_least(model, model.point(each)) for each in starts), key=lambda each: each.cost)
     tried = {best.jumps, model.point(x).jumps}
     while True:
-        better, left = best, np.linalg.svd(slopes_of(model, best.x), full_matrices=False)[0]
+        better, slopes = best, slopes_of(model, best.x)
         by_each = slopes_of_jumps(model, best.x)
-        for interval in _neighbours(best.jumps):
-            point = None if interval in tried else nearest_in(model, best, interval, by_each)
-            if point is not None and point.cost - np.sum(np.square(left.T @ point.deviations)) < better.cost:
-                better = min(better, _least(model, point), key=lambda each: each.cost)
-            tried.add(interval)
+        new = [each for each in _neighbours(best.jumps) if each not in tried]
+        tried.update(new)
+        for interval in new:
+            if foreseen(model, best, slopes, interval) < better.cost:
+                point = nearest_in(model, best, interval, by_each)
+                if point is not None and least_cost(slopes, point.deviations) < better.cost:
+                    better = min(better, _least(model, point), key=lambda each: each.cost)
         if better.cost > (1.0 - _LEAST_GAIN) * best.cost:
             return best.x
         best = better
+
+
+def least_cost(slopes: Floats, deviations: Floats) -> float:
+    """Return the least sum of squares of deviations that are linear in x, with slopes [step, parameter]."""
+    left = np.linalg.svd(slopes, full_matrices=False)[0]
+    return float(np.sum(np.square(deviations)) - np.sum(np.square(left.T @ deviations)))
+
+
+def foreseen(model: Model, point: Point, slopes: Floats, interval: Interval) -> float:
+    """Return about the least sum of squares in a neighbouring interval, too small rather than too large.
+
+    Steps that a jump passes take the law of the step before it, or behind it, as far as that is certain.
+    """
+    load, weight = point.law.force, model.curve.weight
+    deviations, slopes = point.deviations.copy(), slopes.copy()
+    for begin, end in zip(point.jumps, interval, strict=True):
+        later = end > begin
+        passed = np.arange(begin + 1, end + 1) if later else np.arange(end + 1, begin + 1)
+        beside, before = (begin, begin - 1) if later else (begin + 1, begin + 2)
+        if not passed.size or not 0 <= before < load.size or not 0 <= passed[0] <= passed[-1] < load.size:
+            continue
+        change = _UNCERTAIN * passed.size * abs(load[beside] - load[before])
+        off = deviations[passed] + (load[beside] - load[passed]) / weight[passed]
+        deviations[passed] = np.sign(off) * np.maximum(np.abs(off) - change / weight[passed], 0.0)
+        slopes[passed] = slopes[beside] * (weight[beside] / weight[passed])[:, None]
+    return least_cost(slopes, deviations)
 
 
 def _measured(model: Model, jumps: Interval) -> Interval:

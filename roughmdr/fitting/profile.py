@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from roughmdr.fitting.jumps import nearest_in, places_of, projected
+from roughmdr.fitting.jumps import least_cost, nearest_in, places_of, projected
 from roughmdr.fitting.model import Model
 from roughmdr.fitting.search import Found
 from roughmdr.fitting.slopes import slopes_of_jumps
@@ -100,7 +100,6 @@ def certain_edges(model: Model, found: Found) -> Edges:
     """Return the edges of the interval between jumps beyond which the law misses a load by much more than the noise."""
     here, edges, certain = model.point(found.x), list[tuple[Floats, float]](), True
     by_each = slopes_of_jumps(model, found.x) if model.jumps else None
-    left = np.linalg.svd(found.slopes, full_matrices=False)[0]
     least = float(np.sum(np.square(found.deviations)))
     noise = float(np.mean(np.square(found.residuals))) if model.curve.error is None else 1.0
     if by_each is not None:
@@ -108,13 +107,12 @@ def certain_edges(model: Model, found: Found) -> Edges:
         ends = np.stack([places, 1.0 - places])
         for (side, jump), end in np.ndenumerate(np.maximum(ends, 0.0)):
             sign = (-1, 1)[side]
-            next_one = np.array(here.jumps) + sign * (np.arange(places.size) == jump)
-            beyond = nearest_in(model, here, tuple(next_one.tolist()), by_each)
+            interval = tuple((np.array(here.jumps) + sign * (np.arange(places.size) == jump)).tolist())
+            beyond = nearest_in(model, here, interval, by_each)
             if beyond is None:
                 continue
             # the least that parameters can reach there if the law is linear in them
-            squares = beyond.cost - np.sum(np.square(left.T @ beyond.deviations))
-            if squares - least > _CERTAIN * noise:
+            if least_cost(found.slopes, beyond.deviations) - least > _CERTAIN * noise:
                 edges.append((sign * slopes[jump], end))
             else:
                 certain = False
