@@ -23,7 +23,7 @@ from roughmdr.runner.local import over_processes
 from roughmdr.runner.progress import progress
 from roughmdr.schema.wording import short_repr
 from roughmdr.storage.labelled import Array, Labelled
-from roughmdr.variables import MEASURED
+from roughmdr.variables import MEASURED, plain_name
 
 _EACH = 32  # least number of curves for which a process is started
 _NAMELESS = "", "nan", "None", "<NA>", "NaT"  # an empty entry of a file or a DataFrame, in words
@@ -167,7 +167,7 @@ def _together(
         return Array(("curve",), np.array(each, dtype=object), {"long_name": about})
 
     first, *_ = done.values()
-    once = [f"{key.replace('.', '_')}{end}" for key in shared for end in ("", "_standard_error", "_low", "_high")]
+    once = [f"{plain_name(key)}{end}" for key in shared for end in ("", "_standard_error", "_low", "_high")]
     variables = {name: array for fit in done.values() for name, array in fit.variables.items()}
     if shared:  # how errors of all laws together shift them is not found
         variables = {name: array for name, array in variables.items() if not name.endswith("_model_error")}

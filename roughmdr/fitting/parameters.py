@@ -16,6 +16,7 @@ from roughmdr.schema.quantities import Quantity, Reader
 from roughmdr.schema.units import as_text
 from roughmdr.schema.wording import short_repr
 from roughmdr.stages import STAGES
+from roughmdr.variables import plain_name
 
 OFFSET = "offset"
 """The separation, or position of the far end, of the scene where the measurement reads 0."""
@@ -48,7 +49,7 @@ class Parameter(NamedTuple):
     @property
     def name(self) -> str:
         """The name of the variable in the result."""
-        return self.key.replace(".", "_")
+        return plain_name(self.key)
 
     @property
     def logarithmic(self) -> bool:

@@ -16,7 +16,7 @@ from roughmdr.storage.reading import read_arrays
 from roughmdr.storage.result_file import FIT, is_fit
 from roughmdr.storage.result_form import Form, attribute_faults, refuse, with_units
 from roughmdr.storage.result_scene import scene_faults
-from roughmdr.variables import BRANCHES, FIT_ATTRIBUTES, MEASURED
+from roughmdr.variables import BRANCHES, FIT_ATTRIBUTES, MEASURED, plain_name
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -135,7 +135,7 @@ def _parameters(data: Labelled) -> Iterator[tuple[str, tuple[str, ...]]]:
     """Yield the key of each parameter and the names of its value, standard error and ends of its interval."""
     names = data.coordinates["parameter_name"].values if "parameter_name" in data.coordinates else ()
     for key in np.ravel(names):
-        yield str(key), tuple(f"{str(key).replace('.', '_')}{end}" for end in _ENDS)
+        yield str(key), tuple(f"{plain_name(str(key))}{end}" for end in _ENDS)
 
 
 def _forms(data: Labelled, *, required: bool = False) -> dict[str, Form]:

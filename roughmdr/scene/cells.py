@@ -8,7 +8,7 @@ from typing import Any
 from pydantic import ValidationError
 
 from roughmdr.errors import Fault, RoughmdrError
-from roughmdr.scene.keys import entry_at, key_readers, set_key
+from roughmdr.scene.keys import entry_at, is_within, key_readers, set_key
 from roughmdr.scene.scene import Scene
 from roughmdr.scene.sweep import describe_cell, read_sweep
 from roughmdr.schema.faults import find_faults, with_likely_names
@@ -119,11 +119,13 @@ def _validate_cell(
     if cell is not None:
         cache |= {(name, own_values): (table[name], getattr(cell, name)) for name, own_values in swept.items()}
     for number, fault in enumerate(faults):
-        if inner := [key for key in values if key == fault.key or key.startswith(f"{fault.key}.")]:
+        if inner := [key for key in values if is_within(key, fault.key)]:
             faults[number] = fault._replace(key=f"sweep.{inner[0]}")
     return cell, faults
 
 
 def _copy_tables(value: Any) -> Any:
-    """Copy tables within tables, but not the values in them."""
+    """Copy tables within tables and lists, but not the values in them."""
+    if isinstance(value, list):
+        return [_copy_tables(inner) for inner in value] if any(isinstance(each, dict) for each in value) else value
     return {key: _copy_tables(inner) for key, inner in value.items()} if isinstance(value, dict) else value

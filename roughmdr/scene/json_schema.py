@@ -141,8 +141,12 @@ def _table(references: dict[str, JsonSchema], of_families: str, at: str) -> Json
     for first in dict.fromkeys(key.partition(".")[0] for key in inner if "." in key):
         below = _table(references, of_families, f"{at}{first}.")
         properties[first] = {"anyOf": [inner[first], below]} if first in inner else below
+    of_entries = {name: properties.pop(name) for name in list(properties) if "[0]" in name}
     schema: JsonSchema = {"type": "object", "properties": properties, "additionalProperties": False}
+    if of_entries:
+        any_entry = {re.escape(name).replace(r"\[0\]", r"\[\d+\]"): each for name, each in of_entries.items()}
+        schema["patternProperties"] = {f"^{pattern}$": each for pattern, each in any_entry.items()}
     if distributions := [key.removesuffix("distribution") for key in inner if key.split(".")[-1] == "distribution"]:
         pattern = f"^(?:{'|'.join(map(re.escape, distributions))})(?:{of_families})$"
-        schema["patternProperties"] = {pattern: references[_OF_FAMILY]}
+        schema.setdefault("patternProperties", {})[pattern] = references[_OF_FAMILY]
     return schema

@@ -1,5 +1,9 @@
-"""Dotted keys of a scene: those that it can have, the reader of each, and getting and setting one in a table."""
+"""Dotted keys of a scene: those that it can have, the reader of each, and getting and setting one in a table.
 
+A key within an entry of a list has the number of the entry in brackets, from 0: ``viscoelastic.relaxation[0].time``.
+"""
+
+import re
 from collections.abc import Iterator
 from functools import reduce
 from operator import getitem
@@ -14,6 +18,8 @@ from roughmdr.schema.quantities import Name, Reader, WholeNumber
 from roughmdr.schema.section import reader_of
 from roughmdr.schema.wording import short_repr, suggestion
 
+_ENTRY = re.compile(r"(.+)\[(\d+)\]")
+
 
 def key_readers(sections: list[type[BaseModel]], table: Any, prefix: str = "") -> Iterator[tuple[str, Reader]]:
     """Yield every dotted key that takes a number or a name, with its reader.
@@ -24,8 +30,12 @@ def key_readers(sections: list[type[BaseModel]], table: Any, prefix: str = "") -
     for section in [each for each in sections if _allows(each, data)] or sections:
         for name, field in section.model_fields.items():
             key, value = f"{prefix}{name}", data.get(name)
+            inner = sections_of(field.annotation)
             if get_origin(field.annotation) is not list:
-                yield from key_readers(sections_of(field.annotation), value, f"{key}.")
+                yield from key_readers(inner, value, f"{key}.")
+            elif inner:
+                for number, entry in enumerate(value if isinstance(value, list) else [None]):
+                    yield from key_readers(inner, entry, f"{key}[{number}].")
             reader = reader_of((*field.metadata, field.annotation))
             if reader is not None:
                 yield key, reader
@@ -38,9 +48,12 @@ def set_key(table: dict[str, Any], key: str, value: object) -> None:
     """Set a dotted key; RoughmdrError, naming the part that is no table, if that is impossible."""
     *outer, last = key.split(".")
     for position, part in enumerate(outer):
-        table = table.setdefault(part, {})
+        before, at = table, ".".join(outer[: position + 1])
+        table = entry_at(part, before) if _ENTRY.fullmatch(part) else before.setdefault(part, {})
+        if table is None:
+            raise RoughmdrError(f"the scene has no {at}")
         if not isinstance(table, dict):
-            raise RoughmdrError(f"{'.'.join(outer[: position + 1])} is not a table")
+            raise RoughmdrError(f"{at} is not a table")
     table[last] = value
 
 
@@ -75,11 +88,20 @@ def must_be_positive(reader: Reader, value: float) -> bool:
     return False
 
 
+def is_within(key: str, outer: str) -> bool:
+    """Return whether a key is another one, or inside it."""
+    return key == outer or key.startswith((f"{outer}.", f"{outer}["))
+
+
 def entry_at(key: str, table: dict[str, Any]) -> Any:
     """Return the entry of a dotted key; None where there is none."""
+    parts = list[str | int]()
+    for part in key.split("."):
+        match = _ENTRY.fullmatch(part)
+        parts += [part] if match is None else [match[1], int(match[2])]
     try:
-        return reduce(getitem, key.split("."), table)
-    except (KeyError, TypeError):
+        return reduce(getitem, parts, table)  # type: ignore[arg-type]
+    except (IndexError, KeyError, TypeError):
         return None
 
 

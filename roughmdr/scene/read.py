@@ -4,13 +4,14 @@ import copy
 import os
 import re
 from collections.abc import Callable, Iterable, Mapping
-from functools import partial
+from functools import partial, reduce
+from operator import getitem
 from pathlib import Path
 from typing import Any, NamedTuple, cast
 
 from roughmdr.errors import Fault, RoughmdrError, SceneError
 from roughmdr.scene.cells import validate
-from roughmdr.scene.keys import entry_at, set_key
+from roughmdr.scene.keys import is_within, set_key
 from roughmdr.scene.scene import Scene
 from roughmdr.scene.sweep import flatten
 from roughmdr.schema.toml_text import key_lines, line_of, parse_toml, unquote_key
@@ -174,8 +175,7 @@ def _named_change(key: object, value: object) -> _Change:
 def _apply_change(table: dict[str, Any], change: _Change) -> None:
     """Apply a change to a table."""
     dotted, parts = change.key, change.key.split(".")
-    alone: dict[str, Any] = {}
-    set_key(alone, dotted, change.value)
+    alone: dict[str, Any] = reduce(lambda inner, part: {part: inner}, reversed(parts), change.value)
     _normalise(alone, Path())
     try:
         if parts[0] == "sweep":
@@ -184,7 +184,7 @@ def _apply_change(table: dict[str, Any], change: _Change) -> None:
                 raise RoughmdrError("sweep is not a table")
             table["sweep"] = sweep | {key: _merge_range(sweep.get(key), new) for key, new in alone["sweep"].items()}
         else:
-            set_key(table, dotted, entry_at(dotted, alone))
+            set_key(table, dotted, reduce(getitem, parts, alone))
             _remove_from_sweep(table, dotted)
     except RoughmdrError as error:
         raise SceneError(f"{change.by} {change.name}: {error}") from None
@@ -203,7 +203,7 @@ def _remove_from_sweep(table: dict[str, Any], key: str) -> None:
     sweep = table.get("sweep")
     if not isinstance(sweep, dict):
         return
-    fixed = [swept for swept in sweep if f"{swept}.".startswith(f"{key}.") or f"{key}.".startswith(f"{swept}.")]
+    fixed = [swept for swept in sweep if is_within(swept, key) or is_within(key, swept)]
     for swept in fixed:
         del sweep[swept]
     if fixed and not sweep.keys() - {"mode"}:
@@ -235,7 +235,7 @@ def _normalise(table: dict[str, Any], folder: Path) -> None:
 
 def _add_location(fault: Fault, label: str, lines: dict[str, int], applied: list[_Change]) -> Fault:
     for change in applied:
-        if fault.key == change.key or fault.key.startswith((f"{change.key}.", f"{change.key}[")):
+        if is_within(fault.key, change.key):
             return fault._replace(location=change.by)
     line = line_of(fault.key, lines)
     return fault._replace(location=label if line is None else f"{label}:{line}")

@@ -269,7 +269,12 @@ AUXILIARY_COORDINATES = (
 """Coordinates of a result, other than its swept keys; the separation is one unless a machine moves the flat."""
 
 
+def plain_name(key: str) -> str:
+    """Return the name of a key in a result: with underscores for dots and brackets."""
+    return key.replace("].", "_").replace("[", "_").replace(".", "_")
+
+
 def swept_name(key: str) -> str:
-    """Return the name of a swept key in a result: with underscores for dots, and "swept_" if a variable is so named."""
-    name = key.replace(".", "_")
+    """Return the name of a swept key in a result: as ``plain_name``, and with "swept_" if a variable is so named."""
+    name = plain_name(key)
     return f"swept_{name}" if name in RUN_VARIABLES else name

@@ -127,6 +127,18 @@ def test_a_spring_yields() -> None:
     holds(result, keys[1], force * stiffness / (spring * (spring + stiffness)))
 
 
+@pytest.mark.parametrize("scale", [1e-9, 1.0])
+def test_a_time_that_is_longer_is_as_a_flat_that_is_faster(scale: float) -> None:
+    """Force depends on their product alone."""
+    time, speed = "viscoelastic.relaxation[1].time", "viscoelastic.speed"
+    terms = [{"share": 0.0, "time": 1.0}, {"share": 0.6, "time": 0.7}]
+    law = {"viscoelastic": {"relaxation": terms, "speed": scale}}
+    steps = np.concatenate([np.linspace(0.5, -1.0, 12), np.linspace(-0.9, 0.5, 12)]) * scale
+    result = rm.run(tip(scale, 3e6, steps, **law), derivatives=[time, speed])
+    holds(result, time, by(result, speed) * scale / 0.7, off=1e-7)
+    assert np.abs(by(result, time)).max() > 0.0
+
+
 def test_each_cell_of_a_sweep_has_its_own() -> None:
     scene = tip(1e-6, 1e6, np.array([-1e-7])) | {"sweep": {"material.effective_modulus": [1e5, 1e6]}}
     result = rm.run(scene, derivatives="asperities.radius")

@@ -7,6 +7,7 @@ import numpy as np
 import pandas as pd
 import pytest
 import xarray as xr
+from forms import large
 from measurements import BOTH, CASES, DOWN, Case, inside, noise_of, plain_scene
 from scipy.optimize import curve_fit
 
@@ -34,6 +35,36 @@ def test_starts_off_by_three_converge(name: str, factors: tuple[float, float]) -
         assert float(far[name]) == pytest.approx(value, rel=0.1)
     assert float(far.residual_rms) == pytest.approx(0.01, rel=0.3)
     assert "warnings" not in far.attrs or name == "offset"
+
+
+@pytest.mark.parametrize("scale", [1e-9, large(1.0)])
+def test_shares_and_times_of_relaxation(scale: float) -> None:
+    """A tip that comes, waits and goes in a second."""
+    share, time = "viscoelastic.relaxation[0].share", "viscoelastic.relaxation[0].time"
+    asperities = {"source": "random", "shape": "paraboloid", "count": 1, "patch": 100 * scale, "height": 0}
+    down = np.linspace(0.2, -1.0, 40) * scale
+    terms = [{"share": 0.4, "time": 0.1}, {"share": 0.1, "time": 20.0}]
+    scene = {
+        "title": "t",
+        "asperities": asperities | {"radius": 10 * scale},
+        "material": {"modulus": 1e6, "poisson": 0.5},
+        "viscoelastic": {"relaxation": terms, "speed": 3 * scale},
+        "batch": {"estimator": "expected"},
+    }
+    steps = np.concatenate([down, np.full(10, -scale), down[::-1]])
+    dwelling = scene | {"viscoelastic": scene["viscoelastic"] | {"dwell": 0.5}, "path": {"separation": steps.tolist()}}
+    force = rm.run(dwelling).force.to_numpy().ravel()
+    noisy = force + 0.01 * force.max() * np.random.default_rng(1).standard_normal(force.size)
+    measured = pd.DataFrame({"separation": steps, "force": noisy})
+    start = {share: 0.2, time: 0.3, "material.modulus": 2e6}
+    found = rm.fit(measured, dwelling, [share, time, "material.modulus"], set=start)
+    for key, value in ((share, 0.4), (time, 0.1), ("material.modulus", 1e6)):
+        name = key.replace("].", "_").replace("[", "_").replace(".", "_")
+        assert abs(float(found[name]) - value) < 4.0 * float(found[f"{name}_standard_error"])
+        assert float(found[f"{name}_standard_error"]) < 0.2 * value
+    assert inside(found, "material.modulus", 1e6)
+    with pytest.raises(rm.SceneError, match=r"viscoelastic\.relaxation\[2\]\.time"):
+        rm.fit(measured, dwelling, ["viscoelastic.relaxation[2].time"])
 
 
 @pytest.mark.large

@@ -108,6 +108,7 @@ SWEEPS: list[dict[str, Any]] = [
     {"path": {"separation": {"stop": {"contact_fraction": [0.01, 0.02]}}}},
     {"path.machine_stiffness": ["1 kN/m"]},
     {"tangential.friction": [0.1, 0.3], "path.separation": ["1 sigma", "2 sigma"], "path.lateral.amplitude": ["1 nm"]},
+    {"viscoelastic.relaxation[0].time": ["1 ms", 2.0], "viscoelastic": {"relaxation[12].share": [0.1]}},
 ]
 WRONG_SWEEPS: list[dict[str, Any]] = [
     {"adhesion.wrok": [0.05]},
@@ -119,6 +120,8 @@ WRONG_SWEEPS: list[dict[str, Any]] = [
     {"asperities.slope.q": [1.0], "mode": "both"},
     {"batch.realizations": [1, 2]},
     {"adhesion": {"wrok": [0.05]}},
+    {"viscoelastic.relaxation[0].tim": ["1 ms"]},
+    {"viscoelastic": {"relaxation[].share": [0.1]}},
 ]
 
 

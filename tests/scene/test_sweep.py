@@ -1,5 +1,6 @@
 """Sweeps: each cell is the single run of its scene, to the last bit, and xarray finds it by its values."""
 
+import re
 from pathlib import Path
 from typing import Any
 
@@ -71,6 +72,28 @@ def test_zip_is_one_dimension_with_the_swept_keys_beside_it(tmp_path: Path) -> N
         assert_cell(result.isel(cell=i), single(table, {key: values[i] for key, values in axes.items()}))
     with xr.open_dataset(tmp_path / "out.nc") as ds:
         assert ds.asperities_count.to_numpy().tolist() == [10, 60, 30]
+
+
+def test_an_entry_of_a_list_is_swept_by_its_number() -> None:
+    terms = [{"share": 0.5, "time": "10 ms"}, {"share": 0.2, "time": "1 s"}]
+    law = {"viscoelastic": {"relaxation": terms, "speed": "1 um/s"}, "path": {"separation": ["1 sigma", "0 sigma"]}}
+    law |= {"batch": {"estimator": "expected"}, "output": {"variables": ["force"]}}
+    table = scene(adhesion=None, **law)
+    key, times = "viscoelastic.relaxation[1].time", ["1 ms", "2 ms"]
+    swept = rm.run(table | {"sweep": {key: times}})
+    assert swept.viscoelastic_relaxation_1_time.to_numpy().tolist() == [1e-3, 2e-3]
+    for number, time in enumerate(times):
+        same = rm.run(table, set={key: time})
+        assert np.array_equal(same.force, swept.force.isel(viscoelastic_relaxation_1_time=number))
+    assert not np.array_equal(*swept.force)
+    for key, told in (
+        ("viscoelastic.relaxation[2].time", "the scene has no viscoelastic.relaxation[2]"),
+        ("viscoelastic.relaxation[0].tim", "viscoelastic.relaxation[0].tim: unknown key; did you mean 'time'?"),
+    ):
+        with pytest.raises(rm.SceneError, match=re.escape(told)):
+            rm.run(table, set={key: "1 ms"})
+    with pytest.raises(rm.SceneError, match=re.escape("viscoelastic.relaxation[2].time")):
+        rm.run(table | {"sweep": {"viscoelastic.relaxation[2].time": times}})
 
 
 def test_cells_share_their_draws() -> None:
