@@ -9,6 +9,7 @@ from roughmdr.schema.toml_text import parse_toml
 from roughmdr.schema.units import format_quantity
 from roughmdr.schema.wording import format_seconds, format_table, under
 from roughmdr.storage.labelled import Array, Labelled
+from roughmdr.variables import plain_name
 
 COMPARED = ("aicc", "akaike_weight", "tabor_parameter", "model_residual_rms")
 """Numbers that compare adhesion models."""
@@ -40,7 +41,7 @@ def describe_shifts(fit: Labelled) -> str:
 
 def parameter_names(fit: Labelled) -> dict[str, str]:
     """Return the names of the variables of the fitted parameters by their keys."""
-    return {key: key.replace(".", "_") for key in map(str, fit.coordinates["parameter_name"].values)}
+    return {key: plain_name(key) for key in map(str, fit.coordinates["parameter_name"].values)}
 
 
 def load_of(fit: Labelled) -> str:

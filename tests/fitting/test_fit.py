@@ -62,6 +62,7 @@ def test_shares_and_times_of_relaxation(scale: float) -> None:
         name = key.replace("].", "_").replace("[", "_").replace(".", "_")
         assert abs(float(found[name]) - value) < 4.0 * float(found[f"{name}_standard_error"])
         assert float(found[f"{name}_standard_error"]) < 0.2 * value
+        assert key in describe_fit(Labelled.of(found))
     assert inside(found, "material.modulus", 1e6)
     with pytest.raises(rm.SceneError, match=r"viscoelastic\.relaxation\[2\]\.time"):
         rm.fit(measured, dwelling, ["viscoelastic.relaxation[2].time"])
