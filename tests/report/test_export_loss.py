@@ -222,3 +222,5 @@ def test_codes_and_a_branch_are_refused(tmp_path: Path) -> None:
         rm.export("none.nc", tmp_path / "none.table", to="lammps", quantity="loss")
     with pytest.raises(rm.StoreError, match="branch is 'unloading'; a loss is that of a loading and"):
         rm.export("none.nc", tmp_path / "none.csv", to="csv", quantity="loss", branch="unloading")
+    with pytest.raises(rm.StoreError, match=re.escape("error is 0.01; a loss is a row for each loop")):
+        rm.export("none.nc", tmp_path / "none.csv", to="csv", quantity="loss", error=0.01)

@@ -55,6 +55,8 @@ class Export:
         _check("branch", self.branch, list(BRANCHES))
         if self.quantity == "loss" and self.branch != "loading":
             raise StoreError(f"branch is {self.branch!r}; a loss is that of a loading and the unloading behind it")
+        if self.quantity == "loss" and self.error != Export.error:
+            raise StoreError(f"error is {self.error!r}; a loss is a row for each loop, without lines between them")
         if not _LEAST_ERROR <= self.error <= MOST_ERROR:
             raise StoreError(f"error is {self.error!r}; it must be from {_LEAST_ERROR:g} to {MOST_ERROR:g}")
         if self.quantity not in self.format.quantities:
