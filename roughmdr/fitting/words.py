@@ -15,6 +15,7 @@ COMPARED = ("aicc", "akaike_weight", "tabor_parameter", "model_residual_rms")
 """Numbers that compare adhesion models."""
 _DIGITS = 4, 12  # least and most digits of a fitted number
 _SAID = 5  # most failed curves that are named
+_LEAST_SHIFT = 1e-3  # shift by the error of the law, over the standard error, below which it does not count
 
 
 def describe_fit(fit: Labelled) -> str:
@@ -30,12 +31,13 @@ def describe_parameters(fit: Labelled) -> list[str]:
 
 
 def describe_shifts(fit: Labelled) -> str:
-    """Return the shifts of the parameters by the error of the law; empty where that is not known."""
-    shifts = [
-        f"{key} by {format_quantity(_number(fit, f'{name}_model_error'), fit.variables[name].attrs['units'])}"
-        for key, name in parameter_names(fit).items()
-        if f"{name}_model_error" in fit.variables and not is_open(fit, name)
-    ]
+    """Return the shifts of the parameters by the error of the law that count; empty where that is not known."""
+    shifts = list[str]()
+    for key, name in parameter_names(fit).items():
+        if f"{name}_model_error" in fit.variables and not is_open(fit, name):
+            shift = _number(fit, f"{name}_model_error")
+            if shift >= _LEAST_SHIFT * _number(fit, f"{name}_standard_error"):
+                shifts.append(f"{key} by {format_quantity(shift, fit.variables[name].attrs['units'])}")
     return f"not in the intervals: that of the law may shift {', '.join(shifts)}" if shifts else ""
 
 
