@@ -83,10 +83,11 @@ def test_simulated_curves_are_where_their_draws_say(columns: list[str], monkeypa
         measured["force_error"] = noise
         bounds = {MODULUS: (1e6 * np.exp(-0.7), 1e6 * np.exp(0.7)), OFFSET: (-5e-9, 5e-9)}
         fit = rm.fit(measured[columns], scene, [MODULUS, OFFSET], bounds=bounds, posterior=True)
-        some = [draws_of(fit, key)[:, [0, -1]].ravel()[:19] for key in (MODULUS, OFFSET)]
+        # the first and last draws of eight chains or more, fifteen, have sixteen ranks
+        some = [draws_of(fit, key)[:, [0, -1]].ravel()[:15] for key in (MODULUS, OFFSET)]
         ranks.append(tuple(int(np.sum(each < true)) for each, true in zip(some, (modulus, offset), strict=True)))  # type: ignore[arg-type]
     for each in np.transpose(ranks):
-        assert chisquare(np.bincount(each // 2, minlength=10)).pvalue > 0.01, each
+        assert chisquare(np.bincount(each // 2, minlength=8)).pvalue > 0.01, each
 
 
 @pytest.mark.large
