@@ -87,7 +87,7 @@ def run_all(output: Path, quick: bool) -> None:
               show_default=True, help="Folder to write to.")  # fmt: skip
 @click.option("--quick", is_flag=True, help="A reduced form, with rough figures, that says what it leaves out.")
 def main(name: str, output: Path, quick: bool) -> None:
-    """Write NAME.nc and its pictures, and print what was found; of all studies together, report.md as well."""
+    """Write NAME.nc and any pictures of it, and print what was found; of all studies together, report.md as well."""
     if name == "all":
         run_all(output, quick)
     else:

@@ -184,11 +184,6 @@ def test_odd_texts_are_refused_in_words(folder: Path, content: str) -> None:
         assert 'a number with a unit stands in quotes: "3 MPa"' in done.output
 
 
-def test_a_number_too_near_to_nothing_is_refused() -> None:
-    with pytest.raises(rm.SceneError, match=r"adhesion\.work = '1e-400 J/m\^2': expected a number that"):
-        read(scene(adhesion={"model": "jkr", "work": "1e-400 J/m^2"}))
-
-
 NO_RESULTS: dict[str, Any] = {
     "one variable": lambda ds: ds[["force"]],
     "one realisation": lambda ds: ds.isel(realization=0),

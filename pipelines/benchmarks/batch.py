@@ -10,8 +10,8 @@ from statistics import median
 
 import numpy as np
 import xarray as xr
-from studies.comparison import in_cases, panels
-from studies.study import Figure, Study, named, table, timed
+from studies.comparison import in_cases
+from studies.study import Study, named, table, timed
 
 from benchmarks import child
 from benchmarks.tasks import by_scheduler, by_workers
@@ -127,23 +127,6 @@ def measure(quick: bool) -> xr.Dataset:
     return result.assign_attrs({PREFIX + name: number for name, number in capacity(result).items()})
 
 
-def draw(result: xr.Dataset) -> Figure:
-    """Draw the overheads of a cell and of a task, and memory."""
-    figure, (cells, tasks, memory) = panels(11, 3.9, 3)
-    for panel, values, title in (
-        (cells, result.cell_overhead, "Overhead of a cell [ms]"),
-        (tasks, result.task_overhead.isel(workers=-1), "Overhead of a task, two workers [ms]"),
-    ):
-        bars = panel.bar(values[values.dims[0]].to_numpy(), 1e3 * values.to_numpy())
-        panel.bar_label(bars, fmt="%.3g")
-        panel.set_title(title)
-    for name in ("peak_memory", "memory_before"):
-        memory.semilogx(result.realizations, result[name] / 1e6, "o-", label=result[name].attrs["long_name"])
-    memory.set(title="Memory, statistics kept [MB]", xlabel="realisations")
-    memory.legend(frameon=False)
-    return figure
-
-
 def tables(result: xr.Dataset) -> str:
     """Return a table in Markdown for each set of dimensions, a row for each place along them."""
     found = []
@@ -183,6 +166,6 @@ def report(result: xr.Dataset) -> str:
 
 
 STUDY = Study(
-    "batch", "What the batch engine costs", measure, draw, report,
+    "batch", "What the batch engine costs", measure, {}, report,
     "few cells, tasks, asperities and realisations, each timed once",
 )  # fmt: skip

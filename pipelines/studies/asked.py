@@ -13,8 +13,8 @@ import xarray as xr
 
 import roughmdr as rm
 from roughmdr.batch.stopping_rule import FEWEST
-from studies.comparison import groups_of, of_rows, panels
-from studies.study import Figure, Study, in_two_processes, table, timed, without_limits
+from studies.comparison import of_rows
+from studies.study import Study, in_two_processes, table, timed, without_limits
 
 SEED = 11
 REQUESTS = {False: tuple(range(40)), True: (12, 30, 32)}  # numbers of the requests in full and in reduced form
@@ -141,26 +141,6 @@ def measure(quick: bool) -> xr.Dataset:
     return of_rows(words, in_two_processes(carry_out, REQUESTS[quick]), "request")
 
 
-def draw(result: xr.Dataset) -> Figure:
-    """Draw the true error over the stated one, both over that asked for, and realisations over the fewest.
-
-    The latter are those of requests that were met.
-    """
-    figure, (left, right) = panels(12, 5, 2)
-    for (method,), own in groups_of(result, "method"):
-        left.plot(own["reached"], np.maximum(abs(own["error"]), own["unknown"]), "o", ms=5, label=method)
-        met = own.isel(request=np.flatnonzero(own["reached"].to_numpy() <= 1.0))
-        right.plot(met["realizations"], met["realizations"] / met["fewest"], "o", ms=5)
-    for line in (left.axhline, left.axvline):
-        line(1.0, color="0.4", lw=1.0, ls="--")
-    left.set(xscale="log", yscale="log", xlabel="stated error over that asked for", title="Is it met?")
-    left.set(ylabel="true error, or that of the truth, over that asked for")
-    right.set(xscale="log", xlabel="realisations", ylabel="over the fewest that meet it", title="At what cost?")
-    right.axhline(2.0, color="0.4", lw=1.0, ls="--")
-    left.legend(fontsize=9)
-    return figure
-
-
 def report(result: xr.Dataset) -> str:
     """Return how many requests were met, and at what cost."""
     stated = result.isel(request=np.flatnonzero(result["reached"].to_numpy() <= 1.0))
@@ -187,6 +167,6 @@ Errors are over that asked for.
 
 
 STUDY = Study(
-    "asked", "Quantities asked for with their error: met, and at what cost", measure, draw, report,
+    "asked", "Quantities asked for with their error: met, and at what cost", measure, {}, report,
     f"{len(REQUESTS[True])} of {len(REQUESTS[False])} requests",
 )  # fmt: skip

@@ -15,9 +15,9 @@ from roughmdr.elements.half_space import BoundaryElements
 from roughmdr.ensemble.maps.height_map import HeightMap
 from roughmdr.ensemble.maps.summits import find_summits
 from roughmdr.numerics.arguments import Floats
-from studies.comparison import HELD, INTERACTIONS, draw_stated, groups_of, held, law_of, of_rows, panels, percent
+from studies.comparison import HELD, INTERACTIONS, groups_of, held, law_of, of_rows, percent
 from studies.hills.maps import SIDE, MapCase, hills_of, where_reached
-from studies.study import Figure, Study, in_two_processes, table, without_limits
+from studies.study import Study, in_two_processes, table, without_limits
 from studies.versus_adhesive_bem import FLATTER, PRESSED, STATED, Case as Adhering, by_elements, flat_law
 from studies.versus_bem.ensembles import SIZE, Case, separations as of_asperities
 
@@ -240,20 +240,6 @@ def dataset_of(rows: list[dict[str, Any]]) -> xr.Dataset:
     return of_rows(WORDS, rows, "case", "asked", "step").assign_coords(asked=asked)
 
 
-def draw(result: xr.Dataset) -> Figure:
-    """Draw stated over true errors of quantities at given pressure."""
-    quantities = ("contact_fraction", "stiffness", "separation")
-    groups = result["group"].values
-    figure, row = panels(16, 4.8, len(quantities))
-    for panel, quantity in zip(row, quantities, strict=True):
-        one = result.sel(asked=f"{quantity} at given pressure")
-        error = np.maximum(np.abs(one["error"].to_numpy()), one["unknown"].to_numpy())
-        own = {name: np.broadcast_to((groups == name)[:, None], error.shape) for name in dict.fromkeys(groups)}
-        draw_stated(panel, error, one["stated"].to_numpy(), own)
-        panel.set(title=quantity.replace("_", " "), xlabel="true error, or that of boundary elements (relative)")
-    return figure
-
-
 def report(result: xr.Dataset) -> str:
     """Return by method and by what is asked how large errors are, and how the stated ones do."""
     rows = []
@@ -276,6 +262,6 @@ def report(result: xr.Dataset) -> str:
 
 
 STUDY = Study(
-    "at_pressure", "Area, stiffness and gap at given pressure: stated errors and true ones", measure, draw, report,
+    "at_pressure", "Area, stiffness and gap at given pressure: stated errors and true ones", measure, {}, report,
     f"{SURFACES[True]} of {SURFACES[False]} surfaces, on coarser grids",
 )  # fmt: skip

@@ -115,35 +115,3 @@ def panels(width: float, height: float, count: int) -> tuple[Figure, list[Axes]]
         panel.grid(color="0.92")
         panel.set_axisbelow(True)
     return figure, row
-
-
-def draw_errors(panel: Axes, fraction: Floats, errors: Mapping[str, Any]) -> None:
-    """Draw magnitudes of relative errors over the contact fraction, by groups or models."""
-    for label, own in errors.items():
-        panel.loglog(np.ravel(fraction), np.abs(np.ravel(own)), "o", ms=4, label=label)
-    panel.set(xlim=(5e-4, 1.0), xlabel="contact fraction", ylabel="relative error")
-    panel.legend(fontsize=9)
-
-
-def draw_stated(panel: Axes, true: Floats, stated: Floats, groups: Mapping[str, Any]) -> None:
-    """Draw stated errors over true ones, by groups that masks choose, with the band in which they are to lie."""
-    known = np.isfinite(true) & np.isfinite(stated)
-    ends = np.array([0.5, 2.0]) * np.nanquantile(np.concatenate([true[known], stated[known]]), [0.0, 1.0])
-    panel.fill_between(ends, ends, FACTOR * ends, color="0.92", lw=0, label=f"bounds it, within a factor of {FACTOR:g}")
-    panel.loglog(ends, ends, color="k", lw=1)
-    for label, own in groups.items():
-        panel.plot(true[known & own], stated[known & own], "o", ms=5, mec="w", mew=0.4, label=label)
-    panel.set(xlabel="true error of the force (relative)", ylabel="error that is stated")
-    panel.legend(fontsize=9)
-
-
-def draw_outcomes(panel: Axes, result: xr.Dataset, label: str, colours: Mapping[str, str]) -> None:
-    """Draw a bar for each value of a label, of how many cases have which ``outcome``, each in its colour."""
-    names, kinds = np.unique(result[label].values, return_inverse=True)
-    before = np.zeros(names.size)
-    for outcome, colour in colours.items():
-        own = np.bincount(kinds[result["outcome"].values == outcome], minlength=names.size)
-        panel.barh([name.replace("_", " ") for name in names], own, left=before, color=colour, label=outcome)
-        before += own
-    panel.invert_yaxis()
-    panel.set_xlabel("scenes")

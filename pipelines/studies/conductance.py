@@ -14,9 +14,9 @@ import roughmdr as rm
 from roughmdr.elements.half_space import BoundaryElements
 from roughmdr.numerics.arguments import Floats
 from studies.at_pressure import surface_of
-from studies.comparison import INTERACTIONS, cases_of, draw_errors, in_cases, median_and_largest, panels, percent
+from studies.comparison import INTERACTIONS, cases_of, in_cases, median_and_largest, percent
 from studies.hills.maps import MapCase
-from studies.study import Figure, Study, in_two_processes, table, without_limits
+from studies.study import Study, in_two_processes, table, without_limits
 from studies.versus_bem.ensembles import Case
 
 FRACTIONS = np.array([0.001, 0.003, 0.01, 0.03, 0.06, 0.1])  # contact fractions by boundary elements, about
@@ -117,16 +117,6 @@ def bounded(result: xr.Dataset) -> xr.DataArray:
     return (error <= stated + grid_errors(result)).where(np.isfinite(error) & np.isfinite(stated))
 
 
-def draw(result: xr.Dataset) -> Figure:
-    """Draw the error at given separation and under given load over the contact fraction."""
-    figure, row = panels(12, 4.8, 2)
-    fraction = result["contact_fraction_bem"].to_numpy()
-    for panel, name in zip(row, ("conductance", "conductance_under_load"), strict=True):
-        draw_errors(panel, fraction, {model: errors(result, name).sel(model=model) for model in INTERACTIONS})
-        panel.set_title(name.replace("_", " "))
-    return figure
-
-
 def report(result: xr.Dataset) -> str:
     """Return the errors by group and model, and how often the stated error holds."""
     rows, held = [], []
@@ -152,6 +142,6 @@ The grids of boundary elements are right to about {grid}.
 
 
 STUDY = Study(
-    "conductance", "Conductance against boundary elements", measure, draw, report,
+    "conductance", "Conductance against boundary elements", measure, {}, report,
     f"{len(QUICK)} cases, mostly smaller ones on coarser grids, in place of {len(CASES)}",
 )  # fmt: skip

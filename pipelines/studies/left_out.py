@@ -23,7 +23,7 @@ from roughmdr.runner.backend import Backend
 from roughmdr.runner.run import execute
 from roughmdr.scene import Scene, read
 from roughmdr.variables import CURVE_VARIABLES, DEFAULT_VARIABLES
-from studies.study import Figure, Study, blank, named, table
+from studies.study import Study, named, table
 
 SCENES: dict[str, dict[str, Any]] = {
     "loading": {"unload": False},
@@ -162,19 +162,6 @@ def texts(result: xr.Dataset) -> list[list[str]]:
     ]
 
 
-def draw(result: xr.Dataset) -> Figure:
-    """Draw how many times as much there is with each part forced on; no bar where there is nothing without."""
-    figure = blank(10, 0.34 * result.sizes["case"] + 1.2)
-    panel = figure.subplots()
-    left, forced = result.counted.to_numpy().T
-    ratio = forced / np.where(left > 0.0, left, forced)
-    bars = panel.barh([f"{part} ({scene})" for part, scene, *_ in texts(result)], ratio - 1.0, left=1.0)
-    panel.bar_label(bars, [f"{low} to {high} {unit}" for _, _, low, high, unit in texts(result)], padding=4)
-    panel.set(xscale="log", xlim=(0.9, 300.0 * ratio.max()), xlabel="times as much with the part forced on")
-    panel.invert_yaxis()
-    return figure
-
-
 def report(result: xr.Dataset) -> str:
     """Return the table, and how far the forces are apart."""
     ranged = result.part == "range of adhesion"
@@ -187,6 +174,6 @@ scene allows.
 
 
 STUDY = Study(
-    "left_out", "What leaving out saves", measure, draw, report,
+    "left_out", "What leaving out saves", measure, {}, report,
     f"{ASPERITIES[True]} of {ASPERITIES[False]} asperities, {RUNS[True]} of {RUNS[False]} realisations",
 )  # fmt: skip

@@ -19,8 +19,8 @@ import xarray as xr
 from click.testing import CliRunner, Result
 
 from roughmdr.cli import main
-from studies.comparison import draw_outcomes, of_rows, panels
-from studies.study import Figure, Study
+from studies.comparison import of_rows
+from studies.study import Study
 
 COUNT, QUICK_COUNT = 300, 40
 KINDS = ("unit", "sign", "reversed path", "missing counter body")
@@ -149,14 +149,6 @@ def violations(found: xr.Dataset) -> tuple[int, int]:
     return int(full.sum()), int((found.trusted == 0).sum())
 
 
-def draw(found: xr.Dataset) -> Figure:
-    """Draw how the traps of each kind end."""
-    figure, (panel,) = panels(8.0, 3.0, 1)
-    draw_outcomes(panel, found, "kind", dict(zip(OUTCOMES, ("tab:blue", "tab:orange", "tab:red", "0.7"), strict=True)))
-    panel.legend(frameon=False, fontsize="small")
-    return figure
-
-
 def report(found: xr.Dataset) -> str:
     """Return how the traps end, in words."""
     full, silent = violations(found)
@@ -170,4 +162,4 @@ def report(found: xr.Dataset) -> str:
     )
 
 
-STUDY = Study("traps", "Mistakes in scenes", measure, draw, report, f"{QUICK_COUNT} of {COUNT} scenes")
+STUDY = Study("traps", "Mistakes in scenes", measure, {}, report, f"{QUICK_COUNT} of {COUNT} scenes")

@@ -23,7 +23,7 @@ from roughmdr.ensemble.spectral.section import SpectrumAsperities
 from roughmdr.numerics.arguments import Floats
 from roughmdr.storage.labelled import Labelled
 from roughmdr.storage.netcdf_store import write_netcdf
-from studies.at_pressure import FRACTIONS, QUANTITIES, dataset_of, draw, report as table_of, row_of
+from studies.at_pressure import FRACTIONS, QUANTITIES, dataset_of, report as table_of, row_of
 from studies.study import Study, in_two_processes, without_limits
 from studies.versus_bem.ensembles import SIZE, Case, height_map
 
@@ -182,6 +182,6 @@ def report(result: xr.Dataset) -> str:
 
 
 STUDY = Study(
-    "versus_saturated", "Contacts that yield and saturated elements", measure, draw, report,
+    "versus_saturated", "Contacts that yield and saturated elements", measure, {}, report,
     f"{SURFACES[True]} of {SURFACES[False]} surfaces",
 )  # fmt: skip

@@ -29,9 +29,9 @@ def generate(
     from roughmdr.ensemble import make
     from roughmdr.report.summary import describe_ensemble
     from roughmdr.scene import read
-    from roughmdr.storage.files import NETCDF_ENDINGS, check_ending, check_writable
+    from roughmdr.storage.files import NETCDF_ENDINGS
     from roughmdr.storage.netcdf_store import write_netcdf
-    from roughmdr.storage.result_file import check_nothing_lost, check_same_kind, provenance
+    from roughmdr.storage.result_file import check_nothing_lost, check_output, provenance
 
     validated = read(scene, changes)
     for axis in validated.sweep.axes:
@@ -47,10 +47,7 @@ def generate(
         return
     if realization > 0 and not validated.asperities.is_random:
         raise SceneError(f"--realization {realization}: there is only realisation 0; nothing in this scene is random")
-    check_writable(output, validated.inputs)
-    check_ending(output, "file of asperities", NETCDF_ENDINGS)
-    if not fresh:
-        check_same_kind(output, "ensemble")
+    check_output(output, "file of asperities", NETCDF_ENDINGS, validated.inputs, kind="ensemble", fresh=fresh)
     ensemble = make(validated.asperities, validated.seed, realization).labelled()
     if not fresh:
         check_nothing_lost(output, ensemble)

@@ -72,7 +72,7 @@ def info(ctx: click.Context, result: Path, cells: bool, follow: bool, as_json: b
 
 def _follow(result: Path) -> Path:
     """Print how far a batch is until no run is at work; return its result, or the folder of its parts without one."""
-    from roughmdr.batch.resume.kept import SoFar, progress_of, read_kept
+    from roughmdr.batch.resume.kept import Kept, SoFar, progress_of
     from roughmdr.batch.resume.manifest import MANIFEST
     from roughmdr.batch.resume.store import store_folder
     from roughmdr.report.parts import describe_progress, law_lines
@@ -84,7 +84,7 @@ def _follow(result: Path) -> Path:
     so_far, first, started, last, told = None, 0, 0.0, "", 0
     while os.path.isdir(folder):
         try:
-            kept = read_kept(folder)
+            kept = Kept(folder)
         except StoreError:  # it has just ended
             break
         if so_far is None and (kept.scene or kept.holder is None):
@@ -119,10 +119,10 @@ def _is_missing(path: Path) -> bool:
 
 
 def _info_parts(ctx: click.Context, folder: Path, *, cells: bool, as_json: bool) -> None:
-    from roughmdr.batch.resume.kept import read_kept
+    from roughmdr.batch.resume.kept import Kept
     from roughmdr.report.parts import describe_parts, parts_table
 
-    kept = read_kept(folder)
+    kept = Kept(folder)
     if as_json:
         print_document(ctx, parts=parts_table(kept))
     else:

@@ -36,11 +36,12 @@ def plot(file: Path, output: Path, style: str | None, fresh: bool, at: tuple[str
     Of a result the law is drawn, or, of a sweep of many cells, the pull-off against what was swept. An existing picture
     of the same format is replaced, since FILE draws it again.
     """
-    from roughmdr.pictures.kinds import check_picture, draw_request
+    from roughmdr.pictures.kinds import draw_request
     from roughmdr.pictures.request import Request, drawable
-    from roughmdr.pictures.style import save, styled
+    from roughmdr.pictures.style import PICTURE_ENDINGS, save, styled
+    from roughmdr.storage.result_file import check_output
 
-    check_picture(output, [file], fresh=fresh)
+    check_output(output, "picture", PICTURE_ENDINGS, [file], fresh=fresh)
     options["variables"] = tuple(options["variables"])
     if (step := options["step"]) is not None and step.isdigit():
         options["step"] = int(step)

@@ -96,10 +96,10 @@ def _share(text: str) -> "Share":
 
 def _print_share(ctx: click.Context, folder: Path | None, failures: list[str], *, quiet: bool, as_json: bool) -> None:
     """Tell what is kept of a part of the runs; exit with status 1 if runs failed."""
-    from roughmdr.batch.resume.kept import read_kept
+    from roughmdr.batch.resume.kept import Kept
     from roughmdr.report.parts import describe_parts, parts_table
 
-    kept = None if folder is None else read_kept(folder)
+    kept = None if folder is None else Kept(folder)
     text = "kept         nothing: there are fewer runs than parts" if kept is None else describe_parts(kept)
     table = {"parts": kept and parts_table(kept)} if as_json else {}
     _end(ctx, f"{len(failures)} runs failed: {failures[0]}" if failures else "", "" if quiet else text, **table)

@@ -23,10 +23,10 @@ from roughmdr.scene.keys import entry_at, set_key
 from roughmdr.schema.keywords import with_options
 from roughmdr.schema.wording import short_repr
 from roughmdr.stages import stages_in
-from roughmdr.storage.files import NETCDF_ENDINGS, check_ending, check_writable
+from roughmdr.storage.files import NETCDF_ENDINGS
 from roughmdr.storage.labelled import Labelled
 from roughmdr.storage.netcdf_store import write_netcdf
-from roughmdr.storage.result_file import FIT, check_same_kind
+from roughmdr.storage.result_file import FIT, check_output
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -164,10 +164,8 @@ def fit_labelled(
     auto, known = options.model == "auto", Known(options.bounds, options.priors)
     if out is not None:
         files = [Path(each) for each in (measured, *curves.values()) if isinstance(each, str | PathLike)]
-        check_writable(out, [*validated.inputs, *files])
-        check_ending(out, "fit", NETCDF_ENDINGS)
+        check_output(out, "fit", NETCDF_ENDINGS, [*validated.inputs, *files], kind=FIT, fresh=fresh)
         if not fresh:
-            check_same_kind(out, FIT)
             _check_nothing_lost(out, [*free, *curves, *(RANGES if auto else ())])
     if curves:
         model, workers, quiet = Model(validated, curve, free, known), options.workers, options.quiet

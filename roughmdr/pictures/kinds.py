@@ -8,13 +8,12 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from roughmdr.errors import LimitWarning, StoreError, level_outside
 from roughmdr.pictures.panel import MAX_NAMED
 from roughmdr.pictures.request import Content, Drawable, Picture, Place, Request, drawable
-from roughmdr.pictures.style import format_of, save, styled
+from roughmdr.pictures.style import PICTURE_ENDINGS, save, styled
 from roughmdr.result.select import along_longest, cell_of, pull_off_step, select
 from roughmdr.result.view import ResultView
 from roughmdr.schema.keywords import with_options
 from roughmdr.schema.wording import suggestion
-from roughmdr.storage.files import check_writable
-from roughmdr.storage.result_file import check_same_kind
+from roughmdr.storage.result_file import check_output
 from roughmdr.variables import CURVE_VARIABLES, LAW_VARIABLES
 
 if TYPE_CHECKING:
@@ -226,7 +225,7 @@ def plot(
     if source.doubt:
         warnings.warn(f"{source.file}: {source.doubt}", UserWarning, stacklevel=level_outside())
     if out is not None:
-        check_picture(Path(out), [] if source.file is None else [source.file], fresh=fresh)
+        check_output(Path(out), "picture", PICTURE_ENDINGS, [source.file], fresh=fresh)
     with styled(style):
         figure, remarks = draw_request(source, request)
         for title, remark in remarks:
@@ -235,14 +234,3 @@ def plot(
         if out is not None:
             save(figure, Path(out))
     return figure
-
-
-def check_picture(path: Path, inputs: Iterable[Path], *, fresh: bool) -> None:
-    """Raise StoreError unless a picture can be written to ``path`` and replaces nothing but one of its own format.
-
-    With ``fresh`` it may replace a file of any kind but one of the inputs.
-    """
-    check_writable(path, inputs)
-    kind = format_of(path)
-    if not fresh:
-        check_same_kind(path, kind)

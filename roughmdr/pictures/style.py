@@ -23,6 +23,7 @@ BRANCH_COLOURS = {"loading": "#0072b2", "unloading": "#d55e00"}
 """Colours that are distinct for the colour-blind: M. Okabe, K. Ito, Color universal design (2008)."""
 BRANCH_LINESTYLES = {"loading": "-", "unloading": "--"}
 COLOUR_MAP = "viridis"
+PICTURE_ENDINGS = ".png", ".pdf", ".svg"
 _LETTERS_PER_INCH = 12.0  # letters of a title per inch
 _DPI = 160
 _REASON_LETTERS = 200  # most letters of a reason by matplotlib in a message
@@ -151,7 +152,7 @@ def save(figure: "Figure", path: Path) -> None:
     """
     from matplotlib import rc_context
 
-    kind = format_of(path)
+    kind = check_ending(path, "picture", PICTURE_ENDINGS).removeprefix(".")
     dated = {"pdf": {"CreationDate": None}, "svg": {"Date": None}}
     with replace_atomically(path) as temporary, rc_context({"svg.hashsalt": _SALT}):
         figure.savefig(temporary, dpi=_DPI, format=kind, metadata=dated.get(kind))
@@ -162,8 +163,3 @@ def png_of(figure: "Figure") -> bytes:
     content = io.BytesIO()
     figure.savefig(content, format="png", dpi=_DPI, transparent=True)
     return content.getvalue()
-
-
-def format_of(path: Path) -> str:
-    """Return the format of a picture by its name; StoreError if there is no such format."""
-    return check_ending(path, "picture", (".png", ".pdf", ".svg")).removeprefix(".")

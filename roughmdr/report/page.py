@@ -22,8 +22,8 @@ from roughmdr.result.model_errors import largest_of_result
 from roughmdr.result.view import ResultView
 from roughmdr.schema.keywords import named_keywords
 from roughmdr.schema.wording import escape_controls, gathered
-from roughmdr.storage.files import check_ending, check_writable, replace_atomically
-from roughmdr.storage.result_file import check_same_kind
+from roughmdr.storage.files import replace_atomically
+from roughmdr.storage.result_file import check_output
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -75,10 +75,7 @@ def write_report(result: "str | Path | xr.Dataset", out: str | Path, *, fresh: b
 
 def check_page(path: Path, file: Path | None, *, fresh: bool) -> None:
     """Raise StoreError unless a page can be written to ``path``; with ``fresh`` it may replace a file of any kind."""
-    check_writable(path, [] if file is None else [file])
-    check_ending(path, "report", [".html", ".htm"])
-    if not fresh:
-        check_same_kind(path, "html")
+    check_output(path, "report", [".html", ".htm"], [file], kind="html", fresh=fresh)
 
 
 def write_page(source: Drawable, path: Path) -> None:

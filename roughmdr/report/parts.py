@@ -6,7 +6,7 @@ from itertools import islice
 from pathlib import Path
 
 from roughmdr.batch.plan import Plan
-from roughmdr.batch.resume.kept import Kept, LawSoFar, Progress, SoFar, progress_of, read_kept
+from roughmdr.batch.resume.kept import Kept, LawSoFar, Progress, SoFar, progress_of
 from roughmdr.report.documents import LawTable, PartCellTable, PartsTable
 from roughmdr.report.result_document import swept_table
 from roughmdr.scene.sweep import describe_cell
@@ -47,7 +47,7 @@ def describe_progress(kept: Kept, progress: Progress, seconds: float) -> str:
 
 def describe_shares(folders: list[Path]) -> str:
     """Return how far each of the shares of a batch is, of those whose folders are there."""
-    shares = [(folder, read_kept(folder)) for folder in folders]
+    shares = [(folder, Kept(folder)) for folder in folders]
     return format_table(
         [(folder.name, f"{_counted(kept, progress_of(kept))}; at work: {_at_work(kept)}") for folder, kept in shares]
     )

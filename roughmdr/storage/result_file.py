@@ -1,6 +1,7 @@
 """Result files: their provenance, reading them, and the check that an output is replaced only by its own kind."""
 
 import platform
+from collections.abc import Iterable, Sequence
 from contextlib import suppress
 from datetime import UTC, datetime
 from functools import cache
@@ -10,6 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from roughmdr.errors import RoughmdrError, StoreError
+from roughmdr.storage.files import check_ending, check_writable
 from roughmdr.storage.labelled import Labelled
 from roughmdr.storage.reading import read_arrays, read_attribute, read_dimensions
 from roughmdr.storage.result_validation import as_result
@@ -67,13 +69,19 @@ def check_nothing_lost(path: Path, ensemble: Labelled) -> None:
         raise StoreError(f"{path}: holds other asperities already: give another output, or --fresh to replace them")
 
 
-def check_same_kind(path: Path, kind: str) -> None:
-    """Raise StoreError if there is a file at ``path`` that is no ``kind``: png, pdf, svg, html, export, ensemble or
-    fit.
+def check_output(
+    path: Path, name: str, endings: Sequence[str], inputs: Iterable[Path | None] = (), *, kind: str = "", fresh: bool
+) -> None:
+    """Raise StoreError unless an output, such as a "picture", can be written to ``path``: with one of these endings.
+
+    It may replace none of the inputs and, unless it is to be ``fresh``, no file that is no ``kind``: png, pdf, svg,
+    html, export, ensemble or fit; by default that of its ending.
     """
-    if not path.exists():
+    check_writable(path, filter(None, inputs))
+    ending = check_ending(path, name, endings)
+    if fresh or not path.exists():
         return
-    same = False
+    kind, same = kind or ending.removeprefix("."), False
     if kind == "ensemble":
         with suppress(RoughmdrError):
             same = read_dimensions(path).get("height") == ("asperity",)

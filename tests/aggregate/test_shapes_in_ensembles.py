@@ -251,32 +251,6 @@ def test_what_leaves_the_theory_is_said_with_its_numbers() -> None:
     assert "warnings" not in rm.indent(rm.Paraboloid(1e-6), effective_modulus=1e9, indentation=1e-9).attrs
 
 
-BAD: list[tuple[Any, dict[str, Any], str]] = [
-    (rm.Sphere, {"radius": -1e-6}, r"sphere: radius is -1e-06; it must be a finite number above 0"),
-    (rm.TruncatedCone, {"slope": 0.0, "flat_radius": 1e-6}, "slope is 0"),
-    (rm.RoundedPunch, {"flat_radius": float("nan"), "edge_radius": 1e-6}, "flat_radius is nan"),
-    (
-        rm.CappedParaboloid,
-        {"radius": 2e-6, "cap_radius": 1e-6, "blend_radius": 1e-7},
-        "cap_radius is 1e-06; .*at least",
-    ),
-    (rm.PowerSeries, {"terms": {}}, "terms is {}"),
-    (rm.PowerSeries, {"terms": {2.0: -1.0}}, "coefficient of r.2.0 is -1"),
-    (rm.Tabulated, {"r": [0.0, 1e-6], "f": [0.0, 1e-8]}, "at least 3"),
-    (rm.Tabulated, {"r": [0.0, 2e-6, 1e-6], "f": [0.0, 1e-8, 2e-8]}, r"r\[2\] is 1e-06 m after 2e-06 m"),
-    (rm.Tabulated, {"r": [0.0, 1e-6, 2e-6], "f": [0.0, 2e-8, 1e-8]}, r"f\[2\] is 1e-08 m after 2e-08 m"),
-    (rm.Tabulated, {"r": [0.0, 1e-6, 2e-6], "f": [0.0, float("nan"), 1e-8]}, r"f\[1\] is nan"),
-    (rm.Tabulated, {"r": [0.0, 1e-6, 2e-6], "f": [1e-9, 2e-9, 1e-8]}, r"f\[0\] is 1e-09 m"),
-    (rm.Tabulated, {"r": [0.0, 1e-6, 2e-6, 3e-6, 4e-6], "f": [0.0, 1e-6, 1.1e-6, 1.11e-6, 1.12e-6]}, "not be a disc"),
-]
-
-
-@pytest.mark.parametrize(("shape", "parameters", "message"), BAD)
-def test_a_bad_shape_is_refused_by_name_and_value(shape: Any, parameters: dict[str, Any], message: str) -> None:
-    with pytest.raises((rm.ShapeError, rm.OutOfRange), match=message):
-        shape(**parameters)
-
-
 def test_what_a_shape_cannot_do_is_refused() -> None:
     with pytest.raises(rm.ShapeError, match="flat punch"):
         rm.indent(rm.FlatPunch(1e-6), effective_modulus=1e9, contact_radius=1e-6)

@@ -13,13 +13,13 @@ from scenes import ASPERITIES, scene
 
 import roughmdr as rm
 from roughmdr.batch.resume import kept as module
-from roughmdr.batch.resume.kept import LawSoFar, SoFar, progress_of, read_kept
+from roughmdr.batch.resume.kept import Kept, LawSoFar, SoFar, progress_of
 
 FEW = {**ASPERITIES, "count": 50}
 
 
 def law_of(folder: Path) -> LawSoFar:
-    kept = read_kept(folder)
+    kept = Kept(folder)
     law = SoFar(progress_of(kept)).law(kept)
     assert law is not None
     return law
@@ -62,15 +62,15 @@ def test_of_a_sweep_the_first_cell_is_told_and_each_of_its_files_is_read_once(
     table = scene(asperities=FEW, batch={"realizations": 4}, sweep=swept, path={"separation": ["2 um", "1 um"]})
     folder = tmp_path / "out.nc.parts"
     interrupted(table, tmp_path / "out.nc", 1, monkeypatch)
-    law = SoFar(progress_of(read_kept(folder)))
+    law = SoFar(progress_of(Kept(folder)))
     read = []
     reader = module.read_task_result
     monkeypatch.setattr(module, "read_task_result", lambda *file: read.append(file[1]) or reader(*file))
-    first = law.law(read_kept(folder))
+    first = law.law(Kept(folder))
     assert first is not None
     assert (first.cell, first.moments.size) == (0, 2)
     interrupted(table, tmp_path / "out.nc", 2, monkeypatch)
-    second = law.law(read_kept(folder))
+    second = law.law(Kept(folder))
     assert second is not None
     assert second.moments.size == 4
     check(second, table, adhesion_work=0)
@@ -102,12 +102,12 @@ def test_files_that_vanish_or_are_damaged_do_not_count(tmp_path: Path, monkeypat
     (folder / "000003.npz").write_bytes(b"PK")
     assert law_of(folder).moments.size == 4
     monkeypatch.setattr(module, "_FILES", 1)
-    kept = read_kept(folder)
+    kept = Kept(folder)
     law = SoFar(progress_of(kept))
     assert [each.moments.size for _ in range(4) if (each := law.law(kept))] == [2, 2, 2, 4]
     manifest = folder / "manifest.jsonl"
     manifest.write_text(manifest.read_text().replace("roughmdr 0", "roughmdr 9"))
-    kept = read_kept(folder)
+    kept = Kept(folder)
     assert SoFar(progress_of(kept)).law(kept) is None
     assert "law so far" not in said("info", folder)
 

@@ -251,7 +251,6 @@ def changed(table: dict[str, Any], **changes: Any) -> dict[str, Any]:
         (changed(WAVES, shape="cone"), "asperities.shape = 'cone': not available; it can be paraboloid"),
         (changed(WAVES, patch="1 um"), "asperities.patch = 1e-06: holds 0.00865 summits; at least one"),
         (changed(WAVES, patch="1 km"), r"asperities.patch = 1000.0: holds 8.65e\+15 summits; at most 1e\+09"),
-        (changed(WAVES, placement="random", min_distance="1 um"), 'goes with placement = "hard_core" only'),
         (changed(MOMENTS, m2=None), "asperities: needs m2"),
         (changed(MOMENTS, m0="1 um"), "'um' is a unit of m; expected a unit of m2"),
         (changed(MOMENTS, m4="1 um^2"), "'um\\^2' is a unit of m2; expected a unit of m-2"),

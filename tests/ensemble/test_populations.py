@@ -175,7 +175,6 @@ def test_positions_that_do_not_fit_are_refused(distance: str) -> None:
     ("changes", "says"),
     [
         ({"density": "5 /mm^2"}, "density = 5000000.0: does not go with count"),
-        ({"count": None}, "needs count, the pitch of a lattice, or a density"),
         ({"count": None, "density": "1e30 /m^2"}, "asperities.density = 1e"),
         ({"correlation": {}}, "names no parameter of the paraboloid; it takes radius"),
         ({"correlation": {"radius": 1.1}}, "correlation.radius = 1.1: must be at most 1"),

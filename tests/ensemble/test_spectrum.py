@@ -121,7 +121,6 @@ def test_generate_gives_hills_or_summits_with_positions() -> None:
         ({"short_wave": "1 nm"}, "patch", "at most 8192"),
         ({"rms_slope": None}, "", "one of rms_height and rms_slope"),
         ({"rms_height": "1 um"}, "", "one of rms_height and rms_slope"),
-        ({"shape": "paraboloid"}, "shape", "mdr_table"),
         ({"anisotropy": 0.5}, "anisotropy", "at least 1"),
         ({"points": 2.0}, "points", "at least 2.5"),
         ({"long_wave": "100 um", "short_wave": "90 um"}, "short_wave", "no surface with summits"),

@@ -68,9 +68,3 @@ def test_nodes_are_the_asperity_itself(tmp_path: Any) -> None:
     rm.export(tmp_path / "tip.nc", tmp_path / "nodes.csv", to="csv", quantity="nodes", error=1e-9)
     last = (tmp_path / "nodes.csv").read_text().splitlines()[-1]
     assert [float(each) for each in last.split(",")] == pytest.approx([30e-9, 1e6, 10e-6], rel=1e-12)
-
-
-def test_a_path_in_standard_deviations_is_refused_in_words() -> None:
-    path = {"separation": {"start": "4 sigma", "stop": 0, "steps": 10}}
-    with pytest.raises(rm.SceneError, match="cannot be given in sigma: the heights' standard deviation is 0 m"):
-        rm.run(tips(path=path))

@@ -42,8 +42,8 @@ def test_times_and_what_is_left_out_stand_at_the_head(monkeypatch: pytest.Monkey
 @pytest.mark.large
 def test_a_study_that_fails_keeps_no_other_from_the_report(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     report = reported(monkeypatch, tmp_path, "--quick")
-    assert sorted(path.name for path in tmp_path.iterdir()) == ["left_out.nc", "left_out.png", "report.md"]
-    assert {f"Reduced form: {STUDY.reduced}.", "![left_out](left_out.png)"} <= {*report}
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["left_out.nc", "report.md"]
+    assert f"Reduced form: {STUDY.reduced}." in report
     assert any(line.startswith("| no_such_study |") and line.endswith("| failed |") for line in report)
     with xr.open_dataset(tmp_path / "left_out.nc") as result:
         assert result.attrs["comment"] == f"Reduced form: {STUDY.reduced}."

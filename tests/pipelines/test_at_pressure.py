@@ -12,7 +12,6 @@ STUDIED = "at_pressure"
 def test_the_stated_errors_bound_most_of_the_true_ones(studied: CarriedOut, result: xr.Dataset) -> None:
     assert {"asperities", "cut summits", "cut hills", "adhesive asperities"} == set(result["group"].values.tolist())
     assert all(f"| {name} at given pressure |" in studied.text for name in ("contact_fraction", "stiffness"))
-    assert (studied.folder / "at_pressure.png").stat().st_size > 5000
     error, stated, unknown = (result[name].to_numpy() for name in ("error", "stated", "unknown"))
     known = np.isfinite(error) & np.isfinite(stated)
     assert known.sum() > 400

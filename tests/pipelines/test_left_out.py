@@ -41,10 +41,9 @@ def studied(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Studied]:
         yield Studied(text, folder, result)
 
 
-def test_every_part_is_counted_drawn_and_reported(studied: Studied) -> None:
+def test_every_part_is_counted_and_reported(studied: Studied) -> None:
     assert set(studied.result["part"].to_numpy()) == set(PARTS)
     assert all(f"| {part} |" in studied.text for part in PARTS)
-    assert (studied.folder / "left_out.png").stat().st_size > 5000
     assert np.isfinite(studied.result["counted"]).all()
 
 

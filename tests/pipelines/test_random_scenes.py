@@ -140,7 +140,6 @@ def test_any_scene_is_refused_or_right(tmp_path: Path) -> None:
         check=False,
     )
     assert done.returncode == 0, done.stderr
-    assert (tmp_path / "random_scenes.png").stat().st_size > 5000
     with xr.open_dataset(tmp_path / "random_scenes.nc") as result:
         count = result.sizes["scene"]
         assert f"{count} scenes drawn" in done.stdout

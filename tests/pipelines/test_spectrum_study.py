@@ -29,4 +29,5 @@ def test_differences_on_the_same_maps_have_small_errors(studied: CarriedOut) -> 
 def test_it_reports_each_source_and_draws(studied: CarriedOut) -> None:
     for method in METHODS[:-1]:
         assert f"| {method} |" in studied.text
+    assert "![spectrum](spectrum.png)" in studied.text
     assert (Path(studied.folder) / "spectrum.png").stat().st_size > 5000

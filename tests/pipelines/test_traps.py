@@ -21,7 +21,6 @@ def test_no_trap_ends_well_with_more_contact_than_patch_or_without_a_line_on_tru
         assert {"refused", "done"} <= set(found.outcome.values.tolist())
         assert (found.model_error.where(found.exit_status == 0, drop=True) <= 1.0).all()
     assert "0 without a line on trust" in text
-    assert (tmp_path / "traps.png").stat().st_size > 5000
 
 
 @pytest.mark.large

@@ -18,10 +18,9 @@ MODULUS = 1e9
 
 
 @pytest.mark.large
-def test_scenes_are_run_compared_drawn_and_reported(studied: CarriedOut) -> None:
+def test_scenes_are_run_compared_and_reported(studied: CarriedOut) -> None:
     assert studied.result["name"].to_numpy().tolist() == list(QUICK)
     assert all(f"| {name}" in studied.text for name in (*QUICK, *SAMPLES))
-    assert (studied.folder / "trust.png").stat().st_size > 5000
 
 
 @pytest.mark.large

@@ -14,10 +14,9 @@ STUDIED = "versus_bem"
 
 
 @pytest.mark.large
-def test_every_case_is_compared_drawn_and_reported(studied: CarriedOut) -> None:
+def test_every_case_is_compared_and_reported(studied: CarriedOut) -> None:
     assert studied.result.sizes["case"] == len(QUICK)
     assert all(f"| {name} |" in studied.text for name in ("random", "square", "map"))
-    assert (studied.folder / "versus_bem.png").stat().st_size > 5000
 
 
 @pytest.mark.large

@@ -28,7 +28,7 @@ from scenes import scene
 
 import roughmdr as rm
 from roughmdr.batch.plan import make_plan
-from roughmdr.batch.resume.kept import read_kept
+from roughmdr.batch.resume.kept import Kept
 from roughmdr.batch.resume.keys import versions
 from roughmdr.batch.resume.locks import claims_in, give_up
 from roughmdr.batch.resume.manifest import MANIFEST, Runs
@@ -95,7 +95,7 @@ def test_two_share_the_runs_of_a_batch(
         first.wait_for_lines(1)
         with running(Batch(folder, *options, runs_per_task=runs_per_task[1], code=SLOWLY)) as second:
             wait_for_others(folder, first, second)
-            found = read_kept(folder / "out.nc.parts")
+            found = Kept(folder / "out.nc.parts")
             assert found.holder is not None
             assert found.holder.process in {first.pid, second.pid}
             counts = second.succeed(), first.succeed()
@@ -292,7 +292,7 @@ def test_runs_that_two_processes_stored_count_once(stored: tuple[CheckpointStore
     store, result = stored
     for rows in ([0, 1, 2], [1, 2], [0]):
         store.write(result.select_rows(np.array(rows)))
-    found = read_kept(store.folder)
+    found = Kept(store.folder)
     assert (found.runs, found.by_key) == (3, {"a": 3})
     give_up(store.whole_path)
 

@@ -134,11 +134,14 @@ def test_profiles_keep_the_form_of_their_argument() -> None:
         (lambda v: rm.PowerLaw(exponent=2.0, coefficient=v), "coefficient"),
         (lambda v: rm.PowerLaw(exponent=2.0, width=v, rise=1.0), "width"),
         (lambda v: rm.PowerLaw(exponent=2.0, width=1.0, rise=v), "rise"),
+        (lambda v: rm.Sphere(radius=v), "radius"),
+        (lambda v: rm.TruncatedCone(slope=v, flat_radius=1e-6), "slope"),
+        (lambda v: rm.RoundedPunch(flat_radius=v, edge_radius=1e-6), "flat_radius"),
     ],
 )
 def test_a_bad_parameter_is_refused_by_name_and_value(make: object, name: str, value: object) -> None:
-    shown = "blunt" if value == "blunt" else f"{value:g}"
-    with pytest.raises(rm.ShapeError, match=rf"\b{name} is \W?{shown}"):
+    shown = "'blunt': expected a " if value == "blunt" else f"{value:g}; it must be a finite number above 0"
+    with pytest.raises(rm.ShapeError, match=rf"^[a-z_]+: {name} is {shown}"):
         make(value)
 
 
@@ -158,6 +161,16 @@ def test_a_bad_parameter_is_refused_by_name_and_value(make: object, name: str, v
 def test_a_table_that_is_no_profile_is_refused_by_what_is_wrong(r: object, f: object, says: str) -> None:
     with pytest.raises(rm.ShapeError, match=says):
         rm.Tabulated(r, f)
+
+
+def test_parameters_that_do_not_go_together_are_refused() -> None:
+    with pytest.raises(rm.ShapeError, match=r"cap_radius is 1e-06; .*at least"):
+        rm.CappedParaboloid(radius=2e-6, cap_radius=1e-6, blend_radius=1e-7)
+    for terms, says in (({}, "terms is {}"), ({2.0: -1.0}, "coefficient of r.2.0 is -1")):
+        with pytest.raises(rm.ShapeError, match=says):
+            rm.PowerSeries(terms)
+    with pytest.raises(rm.OutOfRange, match="not be a disc"):
+        rm.Tabulated([0.0, 1e-6, 2e-6, 3e-6, 4e-6], [0.0, 1e-6, 1.1e-6, 1.11e-6, 1.12e-6])
 
 
 @pytest.mark.parametrize(

@@ -17,16 +17,15 @@ import xarray as xr
 from hypothesis import HealthCheck, Phase, given, seed, settings
 
 from roughmdr.shapes import SCENE_SHAPES
-from studies.comparison import draw_outcomes, of_rows, panels
+from studies.comparison import of_rows
 from studies.random_scenes.judge import OUTCOMES, Defect, judge
 from studies.random_scenes.scenes import scenes, write_inputs
-from studies.study import Figure, Study, in_two_processes, timed
+from studies.study import Study, in_two_processes, timed
 
 SEEDS = (2026, 2027)  # one for each process
 FULL, QUICK = 10_000, 300  # scenes in all
 QUICK_COHESIVE = ("paraboloid", "flat_punch")  # other shapes take long to compile with adhesion of finite range
 KINDS = ("shape", "adhesion", "source", "estimator")
-_COLOURS = ("#1b6ca8", "#e0a030", "#b8bcc2")
 _WORDS = {"comparisons": ("claims about numbers that held", "1"), "run_time": ("run time of a scene", "s")}
 
 
@@ -70,16 +69,6 @@ def measure(quick: bool) -> xr.Dataset:
         return of_rows(_WORDS, [record for part in in_two_processes(search_part, SEEDS) for record in part], "scene")
 
 
-def draw(result: xr.Dataset) -> Figure:
-    """Draw a bar of outcomes for each shape of the asperities, adhesion, source and estimator."""
-    figure, row = panels(14, 4.5, len(KINDS))
-    for kind, panel in zip(KINDS, row, strict=True):
-        draw_outcomes(panel, result, kind, dict(zip(OUTCOMES, _COLOURS, strict=True)))
-        panel.set_title(kind)
-    row[0].legend(loc="lower right", fontsize=9)
-    return figure
-
-
 def report(result: xr.Dataset) -> str:
     """Return how many scenes there were, and what became of them."""
     count, found = result.sizes["scene"], Counter(result.outcome.values)
@@ -93,6 +82,6 @@ Half of the scenes take up to {1e3 * median:.0f} ms, 99 % up to {nearly_all:.1g}
 
 
 STUDY = Study(
-    "random_scenes", "Scenes drawn at random", measure, draw, report,
+    "random_scenes", "Scenes drawn at random", measure, {}, report,
     f"{QUICK} of {FULL} scenes; adhesion of finite range on the shapes {' and '.join(QUICK_COHESIVE)} alone",
 )  # fmt: skip

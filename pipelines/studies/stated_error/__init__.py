@@ -5,7 +5,6 @@ with 60 digits from the slopes of the profiles, the expected force by quadrature
 """
 
 from functools import cache
-from itertools import product
 from typing import NamedTuple
 
 import numpy as np
@@ -17,11 +16,11 @@ import roughmdr as rm
 from roughmdr.numerics.arguments import Floats
 from roughmdr.scene import Scene, read
 from roughmdr.shapes import SHAPES
-from studies.comparison import cases_of, draw_stated, of_rows, panels
+from studies.comparison import cases_of, of_rows
 from studies.stated_error.contacts import ContactPath, contact_path
 from studies.stated_error.expected import ORDERS, ExpectedForce
-from studies.stated_error.scenes import ADHESIONS, ESTIMATORS, RandomScene, scene
-from studies.study import Figure, Study, in_two_processes, table, without_limits
+from studies.stated_error.scenes import ESTIMATORS, RandomScene, scene
+from studies.study import Study, in_two_processes, table, without_limits
 
 SCENES, QUICK = 200, 60
 FINER = 10.0  # how many times more accurate than the stated error a reference is at least
@@ -31,7 +30,6 @@ _WORDS = {
     "stated_error": ("numerical_error", "1"),
     "honest": ("1 where the true error is within", "1"),
 }
-_MIN_ERROR = 1e-17  # where errors of 0 are drawn
 
 
 class Judged(NamedTuple):
@@ -117,16 +115,6 @@ def as_dataset(drawn: list[RandomScene], judged: list[Judged]) -> xr.Dataset:
     return of_rows(_WORDS, rows, "scene").assign_attrs(refused=len(drawn) - len(rows))
 
 
-def draw(result: xr.Dataset) -> Figure:
-    """Draw the stated error of each scene over the true one."""
-    figure, (panel,) = panels(7.2, 6.0, 1)
-    true, stated = (np.maximum(result[name].to_numpy(), _MIN_ERROR) for name in ("true_error", "stated_error"))
-    groups = {f"{each}, {name}": ((result.estimator == each) & (result.adhesion == name)).to_numpy()
-              for each, name in product(ESTIMATORS, ADHESIONS)}  # fmt: skip
-    draw_stated(panel, true, stated, groups)
-    return figure
-
-
 def report(result: xr.Dataset) -> str:
     """Return the share of honest scenes, those that are not, and how pessimistic the bound is."""
     rows = []
@@ -146,4 +134,4 @@ def report(result: xr.Dataset) -> str:
     return "\n\n".join([*parts, *(["Not within it:", "\n".join(false)] if false else [])])
 
 
-STUDY = Study("stated_error", "Is the stated error honest?", measure, draw, report, f"{QUICK} of {SCENES} scenes")
+STUDY = Study("stated_error", "Is the stated error honest?", measure, {}, report, f"{QUICK} of {SCENES} scenes")

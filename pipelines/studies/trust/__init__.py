@@ -20,8 +20,8 @@ import roughmdr as rm
 from roughmdr.aggregate.tabor import ASSUMED_RANGE
 from roughmdr.numerics.arguments import Floats
 from roughmdr.scene import Scene, read
-from studies.comparison import FACTOR, bounds, draw_stated, law_of, of_rows, panels
-from studies.study import Figure, Study, table, without_limits
+from studies.comparison import FACTOR, bounds, law_of, of_rows
+from studies.study import Study, table, without_limits
 from studies.traps import said_and_found
 from studies.trust.samples import CASES as SURFACES, measure_samples, report_samples
 from studies.trust.scenes import CASES, QUICK, Case
@@ -128,17 +128,6 @@ def errors(result: xr.Dataset) -> Floats:
     return np.asarray(np.abs(1.0 - result["force"] / result["true_force"]))
 
 
-def draw(result: xr.Dataset) -> Figure:
-    """Draw the model error over the true error, a point a scene."""
-    figure, (panel,) = panels(7.2, 6.0, 1)
-    error, stated, oracle = errors(result), result["model_error"].to_numpy(), result["oracle"].to_numpy()
-    draw_stated(panel, error, stated, {words: oracle == name for name, words in _ORACLES.items()})
-    for i in np.flatnonzero(np.isfinite(error)):
-        name = str(result["name"].values[i])
-        panel.annotate(name, (error[i], stated[i]), xytext=(6, -8), textcoords="offset points", fontsize=8)
-    return figure
-
-
 def report(result: xr.Dataset) -> str:
     """Return the table of the scenes, and the counts."""
     error, stated = errors(result), result["model_error"].to_numpy()
@@ -171,6 +160,6 @@ def _percent(share: float) -> str:
 
 
 STUDY = Study(
-    "trust", "How far the force can be trusted: stated and true errors", measure, draw, report,
+    "trust", "How far the force can be trusted: stated and true errors", measure, {}, report,
     f"{len(QUICK)} of {len(CASES)} scenes; 12 of 50 samples of three surfaces in place of {len(SURFACES)}",
 )  # fmt: skip

@@ -18,15 +18,13 @@ from roughmdr.numerics.arguments import Floats
 from studies.comparison import (
     HELD,
     INTERACTIONS,
-    draw_errors,
     each_of,
     held,
     in_cases,
     law_or_nan,
     median_and_largest,
-    panels,
 )
-from studies.study import Figure, Study, in_two_processes, table, without_limits
+from studies.study import Study, in_two_processes, table, without_limits
 from studies.versus_bem.ensembles import (
     CASES,
     FINE,
@@ -162,20 +160,6 @@ def groups(result: xr.Dataset) -> NDArray[np.str_]:
     return np.where(few & (whole != "map") & (whole != "crowd"), "few contacts", whole)
 
 
-def draw(result: xr.Dataset) -> Figure:
-    """Draw the error of independent asperities over the contact fraction with its estimate, and by interaction."""
-    figure, (left, right) = panels(12, 5.2, 2)
-    fraction, group = result["contact_fraction"].sel(model="independent").to_numpy(), groups(result)
-    along = np.geomspace(5e-4, 1.0, 200)
-    for name, kind, style in (("estimate", ASPERITIES, "k-"), ("estimate for maps", SUMMITS, "k--")):
-        left.loglog(along, interaction_error(along, kind), style, lw=1.2, label=name)
-    draw_errors(left, fraction, {name: np.where(group == name, errors(result), np.nan) for name in GROUPS})
-    left.set(ylim=(0.005, 1.3), title="Independent")
-    draw_errors(right, fraction, {model: errors(result, model, False) for model in INTERACTIONS})
-    right.set(ylim=(1e-6, 1.3), title="By interaction")
-    return figure
-
-
 def report(result: xr.Dataset) -> str:
     """Return errors over sqrt(f), how the stated ones do, and errors by interaction and on the finest grids."""
     independent = result.sel(model="independent")
@@ -228,6 +212,6 @@ def _fine(step: xr.Dataset) -> list[str]:
 
 
 STUDY = Study(
-    "versus_bem", "What independence costs: against boundary elements", measure, draw, report,
+    "versus_bem", "What independence costs: against boundary elements", measure, {}, report,
     f"{len(QUICK)} smaller cases in place of {len(CASES)}, on coarser grids",
 )  # fmt: skip

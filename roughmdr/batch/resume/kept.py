@@ -47,26 +47,33 @@ class Holder(NamedTuple):
     since: str  # ISO 8601, UTC
 
 
-class Kept(NamedTuple):
+class Kept(Manifest):
     """Finished runs that a folder keeps."""
 
-    folder: Path
-    output: Path  # the result that the runs belong to
-    share: Share | None  # the share of the batch that is computed here; None for all of it
-    scene: str  # TOML; empty where nothing is kept yet
-    versions: str
-    command: str  # that began the batch; empty where it is not known
-    began: str  # ISO 8601, UTC; empty where it is not known
-    last: str  # when something was kept last, likewise
-    runs: int
-    by_key: Counter[str]
-    """Runs by the keys of their cells; fewer than ``runs`` where an earlier version has not noted them."""
-    files: tuple[StoredFile, ...]
-    failed: frozenset[tuple[str, int]]  # key and realisation; the next run repeats them
-    remark: str  # why the first of them failed
-    complete: bool  # whether all runs of a share are kept
-    holder: Holder | None  # None where no run is at work
-    holder_known: bool  # whether that can be told on this system
+    def __init__(self, folder: Path) -> None:
+        """Read the folder; StoreError where it is no folder of parts, or cannot be read."""
+        super().__init__(folder)
+        self.last = ""
+        """When something was kept last: ISO 8601, UTC; empty where it is not known."""
+        try:
+            self.files = self.new_files()
+            with suppress(FileNotFoundError):  # a run has just begun, or has just ended
+                self.last = _utc((folder / MANIFEST).stat().st_mtime)
+        except OSError as error:
+            raise StoreError(f"{folder}: cannot be read: {error.strerror}") from None
+        self.holder, self.holder_known = _holder(folder)
+        """The run at work, None where there is none, and whether that can be told on this system."""
+        if not self.last and not (folder / LOCK).exists():
+            raise StoreError(f"{folder}: holds no runs; if a batch was at work here it has ended, see {folder.stem}")
+        stored = dict[str, list[Runs]]()
+        for runs in (runs for file in self.files for runs in file.runs):
+            stored.setdefault(runs.key, []).append(runs)
+        self.by_key = Counter({key: _count(ranges) for key, ranges in stored.items()})
+        """Runs by the keys of their cells; fewer than ``runs`` where an earlier version has not noted them."""
+        noted = all(file.runs for file in self.files)
+        self.runs = self.by_key.total() if noted else sum(file.realizations for file in self.files)
+        self.output, self.share = Share.split_name(folder.with_name(folder.name.removesuffix(".parts")))
+        """The result that the runs belong to, and the share of the batch that is computed here; None for all of it."""
 
     @property
     def continued_by(self) -> str:
@@ -89,28 +96,6 @@ class Progress(NamedTuple):
     done: list[int]  # number of runs of each cell
     failed: list[int]
     total: int | None  # runs to be computed; None where that is not known, as with [accuracy]
-
-
-def read_kept(folder: Path) -> Kept:
-    """Read the folder; StoreError where it is no folder of parts, or cannot be read."""
-    manifest, last, stored = Manifest(folder), "", dict[str, list[Runs]]()
-    try:
-        files = manifest.new_files()
-        with suppress(FileNotFoundError):  # a run has just begun, or has just ended
-            last = _utc((folder / MANIFEST).stat().st_mtime)
-    except OSError as error:
-        raise StoreError(f"{folder}: cannot be read: {error.strerror}") from None
-    holder, known = _holder(folder)
-    if not last and not (folder / LOCK).exists():
-        raise StoreError(f"{folder}: holds no runs; if a batch was at work here it has ended, see {folder.stem}")
-    for runs in (runs for file in files for runs in file.runs):
-        stored.setdefault(runs.key, []).append(runs)
-    by_key = Counter({key: _count(ranges) for key, ranges in stored.items()})
-    count = by_key.total() if all(file.runs for file in files) else sum(file.realizations for file in files)
-    of = Share.split_name(folder.with_name(folder.name.removesuffix(".parts")))
-    begun = manifest.scene, manifest.versions, manifest.command, manifest.began
-    failed, complete = (frozenset(manifest.failed), manifest.remark), manifest.complete
-    return Kept(folder, *of, *begun, last, count, by_key, tuple(files), *failed, complete, holder, known)
 
 
 def _count(stored: list[Runs]) -> int:

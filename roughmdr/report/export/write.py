@@ -23,8 +23,8 @@ from roughmdr.result.view import ResultView
 from roughmdr.schema.keywords import with_options
 from roughmdr.schema.units import DIMENSIONLESS, quantity as number_in_si
 from roughmdr.schema.wording import short_repr, suggestion
-from roughmdr.storage.files import check_ending, check_writable, replace_atomically
-from roughmdr.storage.result_file import check_same_kind
+from roughmdr.storage.files import replace_atomically
+from roughmdr.storage.result_file import check_output
 from roughmdr.variables import BRANCHES
 
 if TYPE_CHECKING:
@@ -139,10 +139,7 @@ def export(result: "str | Path | xr.Dataset", out: str | Path, *, to: str, fresh
 
 def check_export(path: Path, file: Path | None, asked: Export, *, fresh: bool) -> None:
     """Raise StoreError unless the export can be written to ``path``; with ``fresh`` it may replace any file."""
-    check_writable(path, [] if file is None else [file])
-    check_ending(path, f"table for {asked.to}", asked.format.endings)
-    if not fresh:
-        check_same_kind(path, "export")
+    check_output(path, f"table for {asked.to}", asked.format.endings, [file], kind="export", fresh=fresh)
 
 
 def write(document: Document, path: Path, asked: Export) -> None:
