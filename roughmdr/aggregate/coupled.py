@@ -38,6 +38,7 @@ if TYPE_CHECKING:
     from roughmdr.interaction.totals import Step
 
 UNAVAILABLE = ("energy", "dissipated_energy")
+_NEIGHBOURHOOD = 7  # number of a point of a hexagonal lattice and its neighbours
 
 
 class CoupledTotals(NamedTuple):
@@ -225,13 +226,15 @@ def _fraction(total: Floats, steps: "list[Step]", ensemble: Ensemble) -> Floats:
     """Return the contact fraction at each step; NaN where it is not known.
 
     Under a flat it is that of the patch. A curved body crowds the contacts under its apex: there it is that of the disc
-    on which they are as widely spread, of at least the area of so many asperities, since few may happen to be near to
-    each other. One alone feels no other.
+    on which they are as widely spread, of at least the area of so many asperities, or of one with its neighbours: few
+    may happen to be near to each other. One alone feels no other.
     """
     area, count = math.nan if ensemble.nominal_area is None else ensemble.nominal_area, total[totals.COUNT]
     if ensemble.axis is None:
         return np.asarray(total[totals.AREA] / area)
-    crowded = np.fmax([step.spread_area for step in steps], count * (area / ensemble.height.size))
+    crowded = np.fmax(
+        [step.spread_area for step in steps], np.maximum(count, _NEIGHBOURHOOD) * (area / ensemble.height.size)
+    )
     return np.asarray(total[totals.AREA] / np.where(count > 1.0, np.minimum(crowded, area), area))
 
 

@@ -43,7 +43,8 @@ _TABLES, _STEP, _NODE = 5e-2, 1.5e-2, 5e-2
 class _Nominal(Stage):
     """[nominal]: the profile of the body, by its shape, "paraboloid" by default, and that shape's parameters.
 
-    ``error`` is the largest error of the force by the rings on which the contact is computed, over the largest force.
+    ``error`` is the largest error of the force by the rings on which the contact is computed, over the largest force;
+    asperities that feel each other in pairs have no rings.
     """
 
     key = "nominal"
@@ -61,7 +62,7 @@ class _Nominal(Stage):
     shape: Literal[tuple(_BODIES)] = "paraboloid"  # type: ignore[valid-type]
     """Shape of the body, which decides the other keys."""
     error: Annotated[float, Quantity(DIMENSIONLESS, at_least=_LEAST_ERROR, at_most=_MOST_ERROR)] = DEFAULT_ERROR
-    """Error of the force by the rings of the contact, over the largest force."""
+    """Error of the force by the rings of the contact, over the largest force; without [interaction]."""
 
     @model_validator(mode="after")
     def _is_a_shape(self) -> "_Nominal":
