@@ -13,7 +13,7 @@ import numpy as np
 from pydantic import Field, create_model, model_validator
 
 from roughmdr.ensemble.random.sections_of_shapes import PARAMETERS
-from roughmdr.errors import ShapeError
+from roughmdr.errors import OutOfRange, ShapeError
 from roughmdr.kernels.adhesion import Adhesion
 from roughmdr.schema.faults import mismatch
 from roughmdr.schema.quantities import EntryError, Quantity
@@ -142,7 +142,7 @@ class _Nominal(Stage):
     def pressed(self, ensemble: "Ensemble") -> "Ensemble":
         """Return the asperities under the body, lower by its profile over them, its apex over the middle of the patch.
 
-        One without a position stays as it is, as under the apex.
+        One without a position stays as it is, as under the apex. OutOfRange where none is under a body that ends.
         """
         from roughmdr.interaction.placed import middle_of
 
@@ -151,6 +151,8 @@ class _Nominal(Stage):
         axis = x, y = middle_of(ensemble)
         away = np.hypot(ensemble.positions["x"] - x, ensemble.positions["y"] - y)
         under = np.flatnonzero(away <= self.body.limit)
+        if not under.size:
+            raise OutOfRange(f"no asperity is under the {self.shape}, which ends at a radius of {self.body.limit:g} m")
         own, area = ensemble.taken(under), (ensemble.nominal_area or math.nan) * (under.size / away.size)
         return replace(own, height=own.height - self.body.f(away[under]), nominal_area=area, axis=axis).sorted()
 

@@ -69,6 +69,9 @@ def test_a_body_with_an_end_presses_those_under_it() -> None:
     assert found.height.size == pytest.approx(400 * math.pi * 0.2**2, rel=0.05)
     assert found.nominal_area == pytest.approx(found.height.size / 400 * SIDE**2)
     assert (found.height == 0.0).all()
+    small = scene.model_copy(update={"nominal": scene.nominal.model_copy(update={"radius": 1e-6})})
+    with pytest.raises(rm.OutOfRange, match="no asperity is under the flat_punch, which ends at a radius of 1e-06 m"):
+        under_body(small)
 
 
 @pytest.mark.parametrize(("side", "within"), [(14, 0.01), (28, 0.003)])
