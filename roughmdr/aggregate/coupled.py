@@ -13,6 +13,7 @@ from roughmdr.aggregate.problem import Problem
 from roughmdr.aggregate.sampling import evening, sample_of
 from roughmdr.ensemble.ensemble import Ensemble
 from roughmdr.errors import SceneError
+from roughmdr.interaction.placed import border_warnings
 from roughmdr.interaction.settings import Interaction
 from roughmdr.interaction.totals import CROWDING
 from roughmdr.loading.machine import MachinePath
@@ -37,6 +38,7 @@ if TYPE_CHECKING:
     from roughmdr.interaction.totals import Step
 
 UNAVAILABLE = ("energy", "dissipated_energy")
+_NEIGHBOURHOOD = 7  # number of a point of a hexagonal lattice and its neighbours
 
 
 class CoupledTotals(NamedTuple):
@@ -53,6 +55,8 @@ class CoupledTotals(NamedTuple):
     """The estimated error of the force that the coupling leaves [1], over the steps."""
     conductance_error: Floats
     """Error of the conductance by the coupling [1], over the steps."""
+    fraction: Floats
+    """Contact fraction where the contacts are [1], over the steps; NaN where it is not known."""
     overlap_count: int
     """Number of contacts that overlap a neighbour, at the closest approach with an equilibrium."""
     overlap_share: float
@@ -116,6 +120,7 @@ def _law(problem: Problem, found: CoupledTotals, separation: Floats, names: list
         overlap=found.overlap_share,
         coupling_error=found.error,
         conductance_error=found.conductance_error,
+        contact_fraction=None if ensemble.axis is None else found.fraction,
     )
     model = "jkr" if work > 0.0 else "none"
     result = LoadSeparation.of(found.total, names, separation, givens, assumptions, found.visits, validity.tabor, model)
@@ -128,7 +133,7 @@ def _law(problem: Problem, found: CoupledTotals, separation: Floats, names: list
     repeats = problem.interaction is not None and problem.interaction.boundary == "periodic"
     sample = sample_of(ensemble, found.force, found.radius, evening(ensemble, found.radius) if repeats else 1.0)
     return result._replace(
-        warnings=(*ensemble.warnings, *found.warnings),
+        warnings=(*ensemble.warnings, *found.warnings, *border_warnings(ensemble, found.radius)),
         overlap_count=float(found.overlap_count),
         marked_steps=float(found.marked),
         grid_points=float(found.grid_points),
@@ -198,10 +203,7 @@ def _found(
     steps = along.steps
     total, solved = _totals(steps, ensemble)
     share = np.array([step.overlap.share for step in steps])
-    if ensemble.nominal_area is None:
-        fraction = np.full(separation.size, math.nan)
-    else:
-        fraction = total[totals.AREA] / ensemble.nominal_area
+    fraction = _fraction(total, steps, ensemble)
     hills = ensemble.origin == "hills"
     beyond = (fraction > HILLS_MARKED_FRACTION) if hills else (share > MARKED_SHARE) | (fraction > MARKED_FRACTION)
     beyond |= [step.lost > 0 for step in steps]
@@ -216,7 +218,24 @@ def _found(
     marked = int(np.sum(beyond | ~solved))
     overlap = math.nan if hills else closest.share
     visits, contacts = along.visits, closest.contacts
-    return CoupledTotals(total, along.radius, along.force, visits, error, of_conductance, contacts, overlap, marked)
+    errors = error, of_conductance, fraction
+    return CoupledTotals(total, along.radius, along.force, visits, *errors, contacts, overlap, marked)
+
+
+def _fraction(total: Floats, steps: "list[Step]", ensemble: Ensemble) -> Floats:
+    """Return the contact fraction at each step; NaN where it is not known.
+
+    Under a flat it is that of the patch. A curved body crowds the contacts under its apex: there it is that of the disc
+    on which they are as widely spread, of at least the area of so many asperities, or of one with its neighbours: few
+    may happen to be near to each other. One alone feels no other.
+    """
+    area, count = math.nan if ensemble.nominal_area is None else ensemble.nominal_area, total[totals.COUNT]
+    if ensemble.axis is None:
+        return np.asarray(total[totals.AREA] / area)
+    crowded = np.fmax(
+        [step.spread_area for step in steps], np.maximum(count, _NEIGHBOURHOOD) * (area / ensemble.height.size)
+    )
+    return np.asarray(total[totals.AREA] / np.where(count > 1.0, np.minimum(crowded, area), area))
 
 
 def _totals(steps: "list[Step]", ensemble: Ensemble) -> tuple[Floats, NDArray[np.bool_]]:
@@ -236,6 +255,7 @@ def _totals(steps: "list[Step]", ensemble: Ensemble) -> tuple[Floats, NDArray[np
         (totals.DISSIPATED, [step.dissipated for step in steps]),
         (totals.MACHINE, [step.by_machine for step in steps]),
         (totals.CONDUCTANCE, [step.conductance for step in steps]),
+        (totals.NOMINAL, [step.nominal_radius for step in steps]),
     ):
         total[row] = values
     solved = np.isfinite(total[totals.ERROR])

@@ -91,7 +91,8 @@ class LoadSeparation(NamedTuple):
         fraction = None if math.isnan(area) else _over_area("contact_fraction", total[totals.AREA], area)
         if fraction is not None:
             check_contact_fraction(fraction, separation, givens)
-        model_error = ModelError.of(assumptions, separation, force, fraction)
+        local = fraction if assumptions.contact_fraction is None else assumptions.contact_fraction
+        model_error = ModelError.of(assumptions, separation, force, local)
         results = {name: total[totals.TOTAL_INDEX[name]] for name in names if name not in PER_AREA}
         if fraction is not None and not PER_AREA.isdisjoint(names):
             pressure = _over_area("pressure", force, area)

@@ -24,12 +24,12 @@ def sample_of(ensemble: Ensemble, force: Floats, radius: Floats, factor: float =
     """Return the effective number of contacts and the sampling errors of force and area, ``SAMPLE`` by their names [1].
 
     ``force`` [N] and ``radius`` [m] are those of all asperities; ``factor`` is the scatter of their sum over that which
-    its parts tell. Parts are 4 x 4 blocks of the patch where positions are known: long waves and clusters count. Else
-    they are the contacts: as many as chance has it (N. R. Campbell, Proc. Camb. Phil. Soc. 15 (1909) 117), or some of N
-    asperities. At the same force the area differs, to first order, by the sum of what parts have above their shares by
-    force (W. G. Cochran, Sampling Techniques, Wiley 1977, chapter 6), of which n contacts tell the variance too small
-    by 1 - 1/n. NaN where no contact bears a force, or one asperity is all there is; for the area also where one contact
-    pulls, or bears all.
+    its parts tell. Parts are 4 x 4 blocks of the patch where positions are known: long waves and clusters count. Else,
+    and under a curved body, by whose profile blocks differ, they are the contacts: as many as chance has it (N. R.
+    Campbell, Proc. Camb. Phil. Soc. 15 (1909) 117), or some of N asperities. At the same force the area differs, to
+    first order, by the sum of what parts have above their shares by force (W. G. Cochran, Sampling Techniques, Wiley
+    1977, chapter 6), of which n contacts tell the variance too small by 1 - 1/n. NaN where no contact bears a force, or
+    one asperity is all there is; for the area also where one contact pulls, or bears all.
     """
     number, count, sides = effective_number(force), force.size, sides_of(ensemble)
     fixed = ensemble.origin == "asperities" and (not ensemble.goes_on or "patch_x" in ensemble.attrs)  # or a lattice
@@ -42,7 +42,7 @@ def sample_of(ensemble: Ensemble, force: Floats, radius: Floats, factor: float =
     if tells := number > 1.0 and load.min() >= 0.0:
         area = radius[bearing] * radius[bearing]
         own = area / area.sum() - load
-    if ensemble.positions.keys() >= {"x", "y"} and sides is not None:
+    if ensemble.positions.keys() >= {"x", "y"} and sides is not None and ensemble.axis is None:
         x, y = (ensemble.positions[name][bearing] * (_HALVES / side) for name, side in zip("xy", sides, strict=True))
         at = _HALVES * (np.floor(x).astype(np.int64) % _HALVES) + np.floor(y).astype(np.int64) % _HALVES
         load, own, fixed, count = _blocks(at, load), _blocks(at, own), True, _HALVES**2

@@ -8,10 +8,10 @@ from roughmdr.kernels.profile.layout import BRANCHED
 from roughmdr.numerics.summation import BLOCK, accumulate, sum_by_halves
 
 # Rows of the totals.
-FORCE, RADIUS, AREA, STIFFNESS, COUNT, ENERGY, DISSIPATED, ERROR, MACHINE, CONDUCTANCE = range(10)
+FORCE, RADIUS, AREA, STIFFNESS, COUNT, ENERGY, DISSIPATED, ERROR, MACHINE, CONDUCTANCE, NOMINAL = range(11)
 """MACHINE, the energy that jumps of a machine lose, is filled under a machine alone; CONDUCTANCE is the sum of radii
-where contacts are independent."""
-ROWS = 10
+where contacts are independent, NOMINAL the effective radius of the load of coupled ones under a curved body."""
+ROWS = 11
 TOTAL_INDEX = {
     "force": FORCE,
     "pressure": FORCE,
@@ -25,6 +25,7 @@ TOTAL_INDEX = {
     "energy": ENERGY,
     "dissipated_energy": DISSIPATED,
     "machine_dissipated_energy": MACHINE,
+    "nominal_contact_radius": NOMINAL,
 }
 """The row of the totals that each curve variable is made from."""
 

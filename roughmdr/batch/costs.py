@@ -130,7 +130,10 @@ def touching(cell: Cell) -> float:
     if source.map_points:
         above = cell.path.separation.min() - np.median(source.extremes(0.5).height)
         return 0.5 * source.expected_count * math.erfc(above / (math.sqrt(2.0) * source.sigma))
-    heights = source.limited_to(_HEIGHTS).ensemble(cell.scene.seed, 0).height
+    if cell.scene.flat:
+        heights = source.limited_to(_HEIGHTS).ensemble(cell.scene.seed, 0).height
+    else:  # a part of the patch would be a part of the body
+        heights = cell.scene.pressed(source.ensemble(cell.scene.seed, 0, with_positions=True)).height
     reached = np.count_nonzero(heights > cell.path.separation.min())
     return source.expected_count * reached / max(heights.size, 1)
 

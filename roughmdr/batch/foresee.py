@@ -1,6 +1,7 @@
 """Foresees the physics of a cell from a few evenly drawn asperities: contact fraction, model error, Tabor number."""
 
 import math
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -68,7 +69,7 @@ def foresee_cells(plan: Plan) -> Prospect:
             separation = separation[np.unique(np.append(some, np.argmin(separation)))]
         path = LoadingPath.along(separation, unload=False, adhesive=cell.scene.work > 0.0)
         try:
-            foresee = _foreseen if cell.scene.flat else _foreseen_curved
+            foresee = _foreseen if cell.scene.flat or cell.scene.needs_positions else _foreseen_curved
             foreseen.append(foresee(cell.scene, path)._replace(cell=number))
         except RoughmdrError as error:
             failures.append(f"{plan.name_of(number)}: {error}")
@@ -117,8 +118,10 @@ def _foreseen(scene: Scene, path: LoadingPath) -> Foreseen:
     """Return the law of a part of the asperities on a part of the patch; coupled in pairs, never on a grid."""
     ensemble = _part(scene)
     variables = ["force"] if ensemble.nominal_area is None else ["force", "contact_fraction", "pressure"]
+    variables = variables if scene.flat else _under_body(scene)
     law = _law_of_part(scene, path, ensemble, variables)
-    area = math.nan if ensemble.nominal_area is None else ensemble.nominal_area
+    area = ensemble.nominal_area if scene.flat else None
+    area = math.nan if area is None else area
     return Foreseen(path, law, law.pull_off.contact_area / area, summits=ensemble.origin == "summits")
 
 
@@ -131,9 +134,13 @@ def foresee_law(cell: Cell, variables: list[str]) -> LoadSeparation:
 
 
 def _part(scene: Scene) -> Ensemble:
-    """Return a part of the asperities of a scene; in pairs fewer."""
+    """Return a part of the asperities of a scene; in pairs fewer, and under a curved body those it touches first."""
     source, paired = scene.asperities, scene.needs_positions
     count = _MAX_PAIRED if paired else _MAX_ASPERITIES
+    if paired and not scene.flat:
+        whole = scene.pressed(source.evenly_drawn(scene.seed, with_positions=True))
+        few, area = whole.taken(np.arange(min(count, whole.height.size))), whole.nominal_area or math.nan
+        return replace(few, nominal_area=area * few.height.size / max(whole.height.size, 1))
     if scene.interaction is not None and scene.interaction.boundary == "free" and not paired:
         count = math.ceil(source.expected_count)  # a larger patch sinks deeper under a pressure
     ensemble = source.limited_to(count).evenly_drawn(scene.seed, with_positions=paired)
@@ -141,8 +148,8 @@ def _part(scene: Scene) -> Ensemble:
 
 
 def _share(scene: Scene, part: Ensemble) -> float:
-    """Return the share of the nominal area that a part of the asperities stands on; 1 where that is not known."""
-    whole = scene.asperities.nominal_area
+    """Return the share of the nominal area that a part of the asperities stands on; 1 where none is known."""
+    whole = scene.nominal_area
     return 1.0 if whole is None or part.nominal_area is None else part.nominal_area / whole
 
 
@@ -155,8 +162,12 @@ def _law_of_part(scene: Scene, path: Path, part: Ensemble, variables: list[str])
 
 def _foreseen_curved(scene: Scene, path: LoadingPath) -> Foreseen:
     """Return the law of a curved body as few rings tell it."""
-    names = ["force", *(name for stage in scene.stages for name in stage.more_variables(["force"]))]
-    return Foreseen(path, simulate_realization(_coarse(scene), path, 0, names, "expected"), math.nan)
+    return Foreseen(path, simulate_realization(_coarse(scene), path, 0, _under_body(scene), "expected"), math.nan)
+
+
+def _under_body(scene: Scene) -> list[str]:
+    """Return the force, with the variables that stages add to it."""
+    return ["force", *(name for stage in scene.stages for name in stage.more_variables(["force"]))]
 
 
 def _coarse(scene: Scene) -> Scene:

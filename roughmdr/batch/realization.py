@@ -29,8 +29,8 @@ def simulate_ensemble(
 
 
 def problem_of(scene: Scene, ensemble: Ensemble) -> Problem:
-    """Return an ensemble with the material, adhesion and interaction of a scene."""
-    return Problem(ensemble, scene.effective_modulus, scene.adhesion_model, scene.interaction)
+    """Return an ensemble with the material, adhesion and interaction of a scene, under its body."""
+    return Problem(scene.pressed(ensemble), scene.effective_modulus, scene.adhesion_model, scene.interaction)
 
 
 def simulate_problem(

@@ -41,6 +41,7 @@ class Ensemble:
     attrs: dict[str, float | int | str] = field(default_factory=dict)
     shared_profile: SharedProfile | None = None  # of a shape whose parameters are not plain numbers
     warnings: tuple[str, ...] = ()  # for the user, about the asperities themselves
+    axis: tuple[float, float] | None = None  # x and y [m] of the apex of a curved body that presses them
 
     @classmethod
     def alike(cls, shape: Shape, height: Floats, positions: dict[str, Floats], patch: float) -> "Ensemble":

@@ -238,7 +238,7 @@ def scene_to_fit(source: Any, changes: Any, curve: MeasuredCurve, free: list[str
         table["path"] = steps
         for section in ("batch", "accuracy"):
             table.pop(section, None)
-        if not all(stage.flat for stage in stages_in(table)):  # else there is no law but the expected one
+        if "interaction" not in table and not all(stage.flat for stage in stages_in(table)):  # only the expected law
             table["batch"] = {"estimator": "expected"}
         for key, entries in sweep.items() if isinstance(sweep, dict) else ():
             if key in free:

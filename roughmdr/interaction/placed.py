@@ -8,6 +8,12 @@ import numpy as np
 from roughmdr.ensemble.ensemble import Ensemble
 from roughmdr.errors import SceneError
 from roughmdr.interaction.settings import Interaction
+from roughmdr.numerics.arguments import Floats
+
+_AT_BORDER = (
+    "contacts reach the border of the patch under the curved body: where the rough surface goes on beyond, asperities "
+    "are missing that the body would touch too; make the patch larger, or end the path higher"
+)
 
 
 def sides_of(ensemble: Ensemble) -> tuple[float, float] | None:
@@ -21,6 +27,29 @@ def sides_of(ensemble: Ensemble) -> tuple[float, float] | None:
     if "patch_x" in attrs and "patch_y" in attrs:
         return float(attrs["patch_x"]), float(attrs["patch_y"])
     return None if area is None else (math.sqrt(area), math.sqrt(area))
+
+
+def middle_of(ensemble: Ensemble) -> tuple[float, float]:
+    """Return x and y [m] of the middle of the patch; of the positions where not all of them lie on it."""
+    x, y = (ensemble.positions[name] for name in ("x", "y"))
+    sides = sides_of(ensemble)
+    if sides is not None and min(x.min(), y.min()) >= 0.0 and x.max() <= sides[0] and y.max() <= sides[1]:
+        return 0.5 * sides[0], 0.5 * sides[1]
+    return 0.5 * float(x.min() + x.max()), 0.5 * float(y.min() + y.max())
+
+
+def border_warnings(ensemble: Ensemble, radius: Floats) -> list[str]:
+    """Return the warning of contacts under a curved body that are less than the mean spacing from the border.
+
+    Contact radii [m] of all asperities, 0 for none.
+    """
+    sides = sides_of(ensemble)
+    if ensemble.axis is None or sides is None or ensemble.nominal_area is None:
+        return []
+    on, spacing = radius > 0.0, math.sqrt(ensemble.nominal_area / max(radius.size, 1))
+    away = [np.abs(ensemble.positions[name][on] - at) for name, at in zip("xy", ensemble.axis, strict=True)]
+    near = any((each > 0.5 * side - spacing).any() for each, side in zip(away, sides, strict=True))
+    return [_AT_BORDER] if near else []
 
 
 def check_placed(ensemble: Ensemble, interaction: Interaction) -> None:

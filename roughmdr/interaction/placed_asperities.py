@@ -24,7 +24,8 @@ class Placed:
 
     def __init__(self, ensemble: Ensemble, effective_modulus: float, interaction: Interaction) -> None:
         at = np.column_stack([ensemble.positions[name] for name in ("x", "y")])
-        at -= at.min(axis=0)
+        first = at.min(axis=0)
+        at -= first
         sides = sides_of(ensemble)
         if interaction.boundary == "free" or sides is None:
             whole = float(np.ptp(at, axis=0).max())
@@ -48,6 +49,8 @@ class Placed:
         """Their kernels without adhesion."""
         self._material = self.kernels_alone.material(effective_modulus, Adhesion())
         self.at = at[self.kept] / self.length
+        self.axis = None if ensemble.axis is None else (np.array(ensemble.axis) - first) / self.length
+        """Position of the apex of a curved body; None under a flat."""
         self.height = ensemble.height / self.length
         self.emerging = below.emerging[self.kept] / self.length
         """Radii from which on the flanks of summits that are buried are in their contacts; inf for none."""

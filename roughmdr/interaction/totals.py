@@ -28,6 +28,9 @@ _PARTIAL = 0.4
 _FARTHEST = 2.5
 """Distance over summed radii beyond which neighbours are left out."""
 
+_HERTZ = 16.0 / (3.0 * math.pi)
+"""Radius of a contact over the mean distance of its load from the axis, under Hertz's pressure."""
+
 CROWDING = "crowding"
 """Asks for it among the names of variables."""
 
@@ -69,6 +72,10 @@ class Step(NamedTuple):
     """Pull-off forces of all other contacts."""
     area_error: float = 0.0
     """About that of the area of a grid at given force [m2]."""
+    spread_area: float = 0.0
+    """``spread_area`` of the contacts [m2]."""
+    nominal_radius: float = 0.0
+    """Effective radius of the load of the contacts that push about the axis of a curved body; 0 under a flat."""
 
 
 def total(
@@ -94,14 +101,37 @@ def total(
         near = crowding(
             at, radius, np.where(touching, load, 0.0), placed.sides, emerging, placed.interaction.order, punch
         )
+    at, area = placed.at[: load.size][touching], radius[touching] ** 2
     return Step(
         placed.force_unit * math.fsum(load[touching].tolist()),
         length * math.fsum(radius[touching].tolist()),
-        math.pi * length * length * math.fsum((radius[touching] ** 2).tolist()),
+        math.pi * length * length * math.fsum(area.tolist()),
         contacts=int(np.count_nonzero(touching)),
         error=placed.force_unit * sizes,
         overlap=Overlap(int(overlapping.sum()), share, near),
+        spread_area=length * length * spread_area(at, area),
+        nominal_radius=0.0 if placed.axis is None else length * _load_radius(at - placed.axis, load[touching]),
     )
+
+
+def spread_area(at: Floats, area: Floats) -> float:
+    """Return the area of the disc on which contacts of these areas and positions would be evenly spread.
+
+    It is 2 pi times the mean square distance from their middle, each by its area: the disc itself where they are spread
+    evenly. Their area over it is the contact fraction where they are: the mean of the local one by contact area if that
+    is a Gaussian of the distance, and 1.11 times this mean if it goes as Hertz's pressure does.
+    """
+    if not area.size:
+        return 0.0
+    weight = area / area.sum()
+    return 2.0 * math.pi * float(weight @ np.square(at - weight @ at).sum(axis=1))
+
+
+def _load_radius(at: Floats, load: Floats) -> float:
+    """Return the effective radius of the loads that push at positions from an axis; 0 where none does."""
+    pushing = np.maximum(load, 0.0)
+    whole = float(pushing.sum())
+    return _HERTZ * float(pushing @ np.hypot(*at.T)) / whole if whole > 0.0 else 0.0
 
 
 def of_all(placed: Placed, touching: NDArray[np.bool_], radius: Floats, load: Floats) -> tuple[Floats, Floats]:

@@ -78,8 +78,12 @@ def summits_error(contact_fraction: Floats, origin: Origin) -> Floats:
     return np.where(contact_fraction > 0.0, _LIGHT_SUMMITS + _SUMMITS * np.sqrt(contact_fraction), 0.0)
 
 
-def coupling_warnings(contact_fraction: float, overlap: float, marked: float, *, on_grid: bool = False) -> list[str]:
-    """Return the warnings of the largest contact fraction and overlap of a path; ``on_grid``: by boundary elements."""
+def coupling_warnings(
+    contact_fraction: float, overlap: float, marked: float, *, on_grid: bool = False, area: str = "the nominal area"
+) -> list[str]:
+    """Return the warnings of the largest contact fraction, of which ``area``, and overlap of a path; ``on_grid``: by
+    boundary elements.
+    """
     if on_grid:
         failed = f"up to {marked:.0f} steps of a realisation have no value: boundary elements did not converge"
         return [failed] if marked > 0 else []
@@ -87,7 +91,7 @@ def coupling_warnings(contact_fraction: float, overlap: float, marked: float, *,
     if contact_fraction > WARNED_FRACTION or overlap > WARNED_SHARE:
         carried = f", and those that overlap carry {overlap:.2g} of the force" if overlap > 0.0 else ""
         lines.append(
-            f"contacts cover up to {contact_fraction:.2g} of the nominal area{carried} at closest approach: where they "
+            f"contacts cover up to {contact_fraction:.2g} of {area}{carried} at closest approach: where they "
             f"are so near, their coupling is approximate (warned of above {WARNED_FRACTION:g} of the area and "
             f"{WARNED_SHARE:g} of the force)"
         )

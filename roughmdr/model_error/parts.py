@@ -87,6 +87,8 @@ class Assumptions(NamedTuple):
     """The error of their conductance; None for independent ones."""
     neighbours_error: Floats | None = None
     """The error of independent ones from their distances, at each step; None to take it from the contact fraction."""
+    contact_fraction: Floats | None = None
+    """That where the contacts are, at each step, if they crowd on a part of the patch; None for that of the patch."""
     yielding: Yielding | None = None
     """Numbers of contacts that yield; None for elastic ones."""
 

@@ -63,16 +63,15 @@ class Snapshot(NamedTuple):
         if np.isnan(path[step]):
             raise StoreError(f"step is {step}, at which there is no separation: the load has pulled the flat off")
         scene = read(file or result.scene).cells[cells.index(cell)]
-        if scene.unlike:
+        if scene.unlike and (scene.flat or not scene.needs_positions):
             raise StoreError(f"the result is of {scene.unlike}: single contacts are not computed of its scene")
         method = result.method(cell) or result.estimator
         if method == "expected":
             raise StoreError(
                 "the result is an expected law, which has no asperities; run its scene with batch.estimator = 'sampled'"
             )
-        ensemble = scene.asperities.ensemble(
-            scene.seed, realization, stratified=method == "stratified", with_positions=placed or scene.needs_positions
-        )
+        drawn, placed = {"stratified": method == "stratified"}, placed or scene.needs_positions
+        ensemble = scene.pressed(scene.asperities.ensemble(scene.seed, realization, **drawn, with_positions=placed))
         above = np.nanmax(path) + _FAR * (np.ptp(path[np.isfinite(path)]) + abs(np.nanmax(path)))
         problem = Problem(ensemble, scene.effective_modulus, scene.adhesion_model, scene.interaction)
         contacts = contacts_at(problem, np.where(np.isnan(path), above, path), step)

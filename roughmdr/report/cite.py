@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 _Named = TypeVar("_Named")
 _PROGRAM = "roughmdr"
 _SOFTWARE = ("Harris2020", "Lam2015", "Virtanen2020", "Hoyer2017", "Rocklin2015")
-_LETTERS = {"``": "“", "''": "”", "{\\ss}": "ß", '{\\"a}': "ä", '{\\"o}': "ö", '{\\"u}': "ü", "--": "-"}
+_LETTERS = {"``": "“", "''": "”", "{\\ss}": "ß", '{\\"a}': "ä", '{\\"o}': "ö", '{\\"u}': "ü", "{\\'e}": "é", "--": "-"}
 """Letters to read, by how papers.bib spells them."""
 
 

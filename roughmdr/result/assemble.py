@@ -169,5 +169,6 @@ def _warnings(plan: Plan, diagnostics: dict[str, NDArray[Any]]) -> list[str]:
     numbers = (fraction, diagnostics["overlap_fraction"], diagnostics["marked_steps"])
     for runs, grid in ((coupled & ~on_grid, False), (on_grid, True)):
         largest = (float(np.fmax.reduce(each[runs], initial=0.0)) for each in numbers)
-        warnings += coupling_warnings(*largest, on_grid=grid)
+        area = "the nominal area" if plan.scene.flat else "the area that they crowd on"
+        warnings += coupling_warnings(*largest, on_grid=grid, area=area)
     return warnings

@@ -73,7 +73,7 @@ def trust_lines(
     ``at_pull_off`` are contact fractions at their pull-offs; NaN, or none at all, where there is none. ``interaction``
     is the model by which asperities feel each other; with "pairwise" the numbers have "grid_points" too.
     ``advise`` says whether they could feel each other where they do not. Under a ``curved`` body the numbers are those
-    of the layer where it is pressed most. ``summits`` says whether the asperities are those of a surface.
+    of the layer where it is pressed most, or where coupled contacts crowd. ``summits``: those of a surface.
     """
     known = {name: _known(numbers[name]) for name in numbers}
     largest = known["largest_contact_fraction"]
@@ -88,10 +88,10 @@ def trust_lines(
         yield "trust", f"the force is right where asperities are far apart, which is {_NO_AREA}"
         return
     tension = _known(at_pull_off)
-    places = [(largest, "at closest approach")]
-    if tension.size:
-        places.insert(0, (tension, "at pull-off"))
-    area = " of the area where the layer is pressed most," if curved else " of the patch"
+    at_tension = [(tension, "at pull-off")] if tension.size else []
+    places = [*at_tension, (largest, "at closest approach")]
+    crowded = "that contacts crowd on" if interaction == "pairwise" else "where the layer is pressed most"
+    area = f" of the area {crowded}," if curved else " of the patch"
     shares = [f"{_range(fraction)}{'' if i else area} {place}" for i, (fraction, place) in enumerate(places)]
     coefficients = _coefficients(known)
     yield "contact", f"summed contact area {', '.join(shares)}"
@@ -101,7 +101,7 @@ def trust_lines(
     independent = interaction != "pairwise" and coefficients is ASPERITIES and PLASTIC not in known
     at_force = [] if curved else _at_force(numbers, asperities=independent)
     if interaction == "pairwise":
-        yield "model error", _coupling(known, summits)
+        yield "model error", _coupling(known, summits, curved=curved)
         yield from under("", [*at_force, *others])
         yield "trust", _trust_coupled(known, summits)
         return
@@ -214,8 +214,8 @@ def _trust(known: dict[str, Floats], coefficients: Coefficients | None, interact
     return f"none: the force may be off by all of it, because of {ALL_PARTS[max(parts, key=parts.__getitem__)]}"
 
 
-def _coupling(known: dict[str, Floats], summits: bool) -> str:
-    """Return in words the coupling of asperities, its error, and the error of independent ones in their place."""
+def _coupling(known: dict[str, Floats], summits: bool, *, curved: bool) -> str:
+    """Return in words the coupling of asperities and its error, under a flat also that of independent ones."""
     error, overlap = (float(known[name].max(initial=0.0)) for name in ("interaction_error", "overlap_fraction"))
     if not known["overlap_fraction"].size:  # not defined for hills
         return f"hills of a map are coupled in pairs: force along the path within {_percent(error)}"
@@ -230,7 +230,8 @@ def _coupling(known: dict[str, Floats], summits: bool) -> str:
     if summits and error > 0.0:
         flanks = float(summits_error(np.array(fraction), "summits"))
         within += f", of which {_percent(min(flanks, error))} because flanks of summits are no paraboloids"
-    return f"{how}{also}: force at closest approach {within}; with independent asperities off by {independent}"
+    within += "" if curved else f"; with independent asperities off by {independent}"
+    return f"{how}{also}: force at closest approach {within}"
 
 
 def _trust_coupled(known: dict[str, Floats], summits: bool) -> str:

@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 from pydantic import BeforeValidator, Field, InstanceOf, create_model
 
-from roughmdr.ensemble import Asperities
+from roughmdr.ensemble import Asperities, Ensemble
 from roughmdr.errors import RoughmdrError
 from roughmdr.interaction.settings import Interaction
 from roughmdr.kernels.adhesion import Adhesion
@@ -73,7 +73,7 @@ class _Sections(Section):
             return (self.batch.estimator,)
         if self.accuracy.method != "auto":
             return (self.accuracy.method,)
-        if not self.flat:
+        if not self.flat and not self.needs_positions:
             return ("expected",)
         if self.path.control != "separation":
             return ("sampled",)
@@ -124,6 +124,12 @@ class _Sections(Section):
     def flat(self) -> bool:
         """Whether a flat presses all asperities alike."""
         return all(stage.flat for stage in self.stages)
+
+    def pressed(self, ensemble: Ensemble) -> Ensemble:
+        """Return drawn asperities as a flat presses them, lower where a body is curved."""
+        for stage in self.stages:
+            ensemble = stage.pressed(ensemble)
+        return ensemble
 
     @property
     def unlike(self) -> str:

@@ -1,12 +1,19 @@
-"""[nominal]: the curved body that presses the rough layer, in place of a flat."""
+"""[nominal]: the curved body that presses the rough layer, in place of a flat.
 
+Asperities that feel each other in pairs are drawn, and each is lower by the profile of the body over it: a flat presses
+them, and the half-space under all of them carries the body too. Without [interaction] they have their expected law.
+"""
+
+import math
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 
+import numpy as np
 from pydantic import Field, create_model, model_validator
 
 from roughmdr.ensemble.random.sections_of_shapes import PARAMETERS
-from roughmdr.errors import ShapeError
+from roughmdr.errors import OutOfRange, ShapeError
 from roughmdr.kernels.adhesion import Adhesion
 from roughmdr.schema.faults import mismatch
 from roughmdr.schema.quantities import EntryError, Quantity
@@ -17,6 +24,7 @@ from roughmdr.variables import NOMINAL_VARIABLES
 
 if TYPE_CHECKING:
     from roughmdr.aggregate.law import LoadSeparation
+    from roughmdr.ensemble import Ensemble
     from roughmdr.loading.lateral import Path
 
 DEFAULT_ERROR = 1e-4
@@ -25,6 +33,8 @@ _BODIES = {name: shape for name, shape in SCENE_SHAPES.items() if not shape.shar
 _UNITS = {name: unit for shape in _BODIES.values() for name, unit in shape.units.items()}
 _COMPUTED = ("force", "contact_area", "contact_count", "contact_radius_sum", "stiffness", "model_error_curve")
 """Variables of a law under a curved body."""
+_OF_JUMPS = ("energy", "dissipated_energy")
+"""More variables, of adhesive asperities that feel each other."""
 _FORESEEN_ERROR = 1e-2  # relative error of the force of a foreseen law
 _TABLES, _STEP, _NODE = 5e-2, 1.5e-2, 5e-2
 """Seconds: tables of each node, a step on all rings, and with adhesion each node of the first rule at a step."""
@@ -33,7 +43,8 @@ _TABLES, _STEP, _NODE = 5e-2, 1.5e-2, 5e-2
 class _Nominal(Stage):
     """[nominal]: the profile of the body, by its shape, "paraboloid" by default, and that shape's parameters.
 
-    ``error`` is the largest error of the force by the rings on which the contact is computed, over the largest force.
+    ``error`` is the largest error of the force by the rings on which the contact is computed, over the largest force;
+    asperities that feel each other in pairs have no rings.
     """
 
     key = "nominal"
@@ -51,7 +62,7 @@ class _Nominal(Stage):
     shape: Literal[tuple(_BODIES)] = "paraboloid"  # type: ignore[valid-type]
     """Shape of the body, which decides the other keys."""
     error: Annotated[float, Quantity(DIMENSIONLESS, at_least=_LEAST_ERROR, at_most=_MOST_ERROR)] = DEFAULT_ERROR
-    """Error of the force by the rings of the contact, over the largest force."""
+    """Error of the force by the rings of the contact, over the largest force; without [interaction]."""
 
     @model_validator(mode="after")
     def _is_a_shape(self) -> "_Nominal":
@@ -76,11 +87,9 @@ class _Nominal(Stage):
         return SHAPES[self.shape](**self._given)
 
     def check(self, scene: Given) -> None:
-        """Raise a mismatch with [interaction], boundary elements, other paths than separations, variables it lacks, or
-        asperities without an expected law on a patch.
+        """Raise a mismatch with boundary elements, other paths than separations, variables it lacks, asperities without
+        a patch, or [interaction] but that of pairs on a half-space; without it, asperities without an expected law.
         """
-        if scene.interaction is not None:
-            raise mismatch("nominal", "does not go with [interaction]: the half-space gives way under all asperities")
         for stage in scene.stages:
             if stage.on_grid:
                 raise mismatch("nominal", f"does not go with [{stage.key}]: boundary elements press a flat")
@@ -88,19 +97,34 @@ class _Nominal(Stage):
             raise mismatch("nominal", f"goes with path.separation, not with path.{scene.path.key}")
         if scene.path.target is not None:
             raise mismatch(f"path.separation.stop.{scene.path.target.variable}", "does not go with [nominal]")
+        computed = _COMPUTED + (_OF_JUMPS if scene.interaction is not None and scene.work > 0.0 else ())
         for name in scene.output.variables:
-            if name not in _COMPUTED:
-                allowed = ", ".join(_COMPUTED)
+            if name not in computed:
+                allowed = ", ".join(computed)
                 raise mismatch("output.variables", f"{name!r} is not available with [nominal]; there are {allowed}")
+        if scene.asperities.nominal_area is None:
+            raise mismatch("nominal", "needs asperities on a patch, which tells how many there are per area")
+        if scene.interaction is None:
+            self._check_layer(scene)
+            return
+        if "error" in self.model_fields_set:
+            raise mismatch(
+                "nominal.error", "is that of the expected law; with [interaction] there is interaction.error"
+            )
+        for key, asked in (("model", "pairwise"), ("boundary", "free")):
+            if (given := getattr(scene.interaction, key)) != asked:
+                reason = "the body does not repeat with the patch, nor is its contact spread evenly over it"
+                raise mismatch(f"interaction.{key}", f"is {given!r}; with [nominal] it must be {asked!r}: {reason}")
+
+    def _check_layer(self, scene: Given) -> None:
+        """Raise a mismatch where the asperities have no expected law, or rings do not remember their contacts."""
         if scene.estimators != ("expected",):
             key = "batch.estimator" if scene.accuracy is None else "accuracy.method"
-            raise mismatch(key, 'must be "expected" with [nominal]: the layer has the expected law of its asperities')
+            raise mismatch(key, 'must be "expected" with [nominal], unless asperities feel each other in pairs')
         if reason := scene.reason_against("expected"):
             raise mismatch("nominal", f"needs the expected law of the asperities: {reason}")
         if scene.asperities.equal_heights:
             raise mismatch("nominal", "needs asperities whose heights scatter: all heights are the same")
-        if scene.asperities.nominal_area is None:
-            raise mismatch("nominal", "needs asperities on a patch, which tells how many there are per area")
         if reason := _against_adhesion(scene.adhesion_model, SHAPES[scene.asperities.shape_name]):
             raise mismatch("adhesion.model", f"does not go with [nominal]: {reason}")
 
@@ -115,6 +139,23 @@ class _Nominal(Stage):
 
         return Contact.of(self.body, scene.effective_modulus, scene.adhesion_model).depth[0]
 
+    def pressed(self, ensemble: "Ensemble") -> "Ensemble":
+        """Return the asperities under the body, lower by its profile over them, its apex over the middle of the patch.
+
+        One without a position stays as it is, as under the apex. OutOfRange where none is under a body that ends.
+        """
+        from roughmdr.interaction.placed import middle_of
+
+        if ensemble.axis is not None or not {"x", "y"} <= ensemble.positions.keys() or not ensemble.height.size:
+            return ensemble
+        axis = x, y = middle_of(ensemble)
+        away = np.hypot(ensemble.positions["x"] - x, ensemble.positions["y"] - y)
+        under = np.flatnonzero(away <= self.body.limit)
+        if not under.size:
+            raise OutOfRange(f"no asperity is under the {self.shape}, which ends at a radius of {self.body.limit:g} m")
+        own, area = ensemble.taken(under), (ensemble.nominal_area or math.nan) * (under.size / away.size)
+        return replace(own, height=own.height - self.body.f(away[under]), nominal_area=area, axis=axis).sorted()
+
     def coarse(self) -> "_Nominal":
         return self.model_copy(update={"error": _FORESEEN_ERROR})
 
@@ -122,9 +163,12 @@ class _Nominal(Stage):
         return _TABLES * nodes + steps * (_STEP + (_NODE * nodes if adhering else 0.0))
 
     def law(self, scene: Given, contacts: Contacts) -> Law:
-        """Return the law of the body on a layer with the expected law of the asperities."""
-        from roughmdr.loading.path import LoadingPath
+        """Return that of the contacts under the body or, of an expected law, of the body on a layer with this law."""
         from roughmdr.stages import curved
+
+        if contacts.problem is not None:
+            return lambda path, names: curved.with_body(contacts.law(path, [*names, *NOMINAL_VARIABLES]), self.body)
+        from roughmdr.loading.path import LoadingPath
 
         layer = curved.Layer(scene.asperities, scene.effective_modulus, scene.adhesion_model)
 
@@ -133,6 +177,11 @@ class _Nominal(Stage):
             return curved.compute(layer, self.body, path, error=self.error, variables=names)
 
         return law
+
+    @classmethod
+    def cites(cls, table: Mapping[str, Any], variables: list[str]) -> Mapping[str, str]:
+        drawn = cls.is_in(table) and "interaction" in table
+        return {"Yashima2015": "curvature"} if drawn else super().cites(table, variables)
 
     def attributes(self) -> dict[str, str]:
         return {self.key: self.shape}

@@ -97,7 +97,7 @@ class Stage(Section):
     on_grid: ClassVar[bool] = False
     """Whether it presses the surface itself by boundary elements, which takes the positions of the asperities."""
     flat: ClassVar[bool] = True
-    """False where the section replaces the flat by another body, which exists for the expected law only."""
+    """False where the section replaces the flat by another body."""
     unlike: ClassVar[str] = ""
     """How the law differs from that of elastic contacts under a flat, the only one that theories and coupling describe,
     in words; empty if it does not.
@@ -161,6 +161,10 @@ class Stage(Section):
     def coordinates(self, values: "Floats") -> "dict[str, Floats]":
         """Return the coordinates over the steps that the section adds to the controlled ``values``, in SI."""
         return {}
+
+    def pressed(self, ensemble: "Ensemble") -> "Ensemble":
+        """Return drawn asperities as a flat presses them in place of the body of the section."""
+        return ensemble
 
     def clear_above(self, scene: Given) -> float:
         """Return the height [m] that the section adds to the start "clear"."""

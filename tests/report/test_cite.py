@@ -29,6 +29,7 @@ WITHOUT_DOI = {
     "MindlinDeresiewicz1953",
     "Jaeger1995",
     "Masing1926",
+    "Yashima2015",
 }
 """Papers whose DOI is not certain, or which have none."""
 SOFTWARE = {"Harris2020", "Lam2015", "Virtanen2020", "Hoyer2017", "Rocklin2015"}

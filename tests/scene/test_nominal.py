@@ -10,12 +10,16 @@ import xarray as xr
 from scenes import ASPERITIES, scene
 
 import roughmdr as rm
+from roughmdr.batch.costs import touching
+from roughmdr.batch.foresee import foresee_cells
 from roughmdr.batch.plan import make_plan
 from roughmdr.scene import read
 from roughmdr.shapes import Cone, Paraboloid, PowerLaw
 
 EXPECTED = {"estimator": "expected"}
 PATH = {"separation": {"start": "3 sigma", "stop": "0 sigma", "steps": 5}, "unload": True}
+PAIRS = {"model": "pairwise", "boundary": "free"}
+DRAWN: dict[str, Any] = {"interaction": PAIRS, "batch": {"realizations": 2}}
 LAYER = {**ASPERITIES, "radius": "50 um"}
 
 
@@ -53,7 +57,22 @@ def test_a_body_is_a_shape_with_its_parameters(section: dict[str, Any], body: ob
         ({"nominal": {"shape": "tabulated"}}, "nominal.shape"),
         ({"batch": {"realizations": 4}}, 'batch.estimator: must be "expected"'),
         ({"batch": None, "accuracy": {"relative": 0.01, "method": "sampled"}}, 'accuracy.method: must be "expected"'),
-        ({"interaction": {"model": "mean_field"}}, "nominal: does not go with .interaction."),
+        (
+            {"interaction": {"model": "mean_field"}},
+            "interaction.model: is 'mean_field'; with .nominal. it must be",
+        ),
+        ({"interaction": {"model": "pairwise"}}, "interaction.boundary: is 'periodic'; .* must be 'free'"),
+        ({**DRAWN, "nominal": {"radius": "1 mm", "error": 1e-3}}, "nominal.error: is that of the expected law"),
+        ({"interaction": PAIRS}, "batch.estimator: cannot be 'expected'"),
+        ({**DRAWN, "path": {"force": {"stop": "1 mN", "steps": 5}}}, "goes with path.separation, not with path.force"),
+        (
+            {**DRAWN, "path": {"separation": {"start": "clear", "stop": {"pressure": "1 kPa"}, "steps": 5}}},
+            "path.separation.stop.pressure: does not go",
+        ),
+        ({**DRAWN, "output": {"variables": ["energy"]}}, "'energy' is not available with .nominal.; there are force"),
+        ({**DRAWN, "output": {"variables": ["contact_fraction"]}}, "'contact_fraction' is not available"),
+        ({**DRAWN, "reference": {"model": "boundary_elements"}}, "does not go with .reference."),
+        ({**DRAWN, "adhesion": {"model": "auto", "work": 0.05, "strength": "1 MPa"}}, "goes with adhesion 'jkr' only"),
         ({"path": {"force": {"stop": "1 mN", "steps": 5}}}, "goes with path.separation, not with path.force"),
         (
             {"path": {"separation": {"start": "clear", "stop": {"contact_fraction": 0.01}, "steps": 5}}},
@@ -154,3 +173,47 @@ def test_a_fit_finds_the_radius_of_the_asperities() -> None:
 def test_a_result_without_an_area_is_no_table(tmp_path: Path) -> None:
     with pytest.raises(rm.StoreError, match=r"per nominal area, and the result has none under"):
         rm.export(rm.run(curved()), tmp_path / "layer.csv", to="csv")
+
+
+def test_asperities_that_feel_each_other_are_drawn(tmp_path: Path) -> None:
+    rough = {**LAYER, "height": {"distribution": "normal", "std": "3 um"}}
+    variables = ["force", "contact_area", "model_error_curve"]
+    table = curved(**DRAWN, asperities=rough, output={"variables": variables}, title="Drawn under a ball")
+    plan = make_plan(read(table))
+    assert plan.variables == [*variables, "nominal_contact_radius"]
+    assert not any(line.startswith(("curvature", "interaction", "positions", "random draws")) for line in plan.left_out)
+    result = rm.run(table, tmp_path / "drawn.nc", workers=1)
+    assert (result.status == 0).all()
+    assert (np.diff(result.force[:, :5]) >= 0.0).all()
+    assert (result.nominal_contact_radius[:, 4] > 0.0).all()
+    assert "nominal_area" not in result
+    assert (result.largest_contact_fraction > 2.0 * result.contact_area.max("step") / 1e-6).all()
+    told = rm.info(tmp_path / "drawn.nc")
+    assert "of the area that contacts crowd on" in told
+    assert "coupled in pairs: force at closest approach within" in told
+    assert "independent" not in told.split("left out")[0]
+    assert "rubber with model randomly rough surfaces" in rm.cite(result)
+    assert "rough spheres" not in rm.cite(result)
+    rm.plot(result, tmp_path / "map.png", kind="map")
+    with pytest.raises(rm.StoreError, match="per nominal area, and the result has none under"):
+        rm.export(result, tmp_path / "drawn.csv", to="csv")
+    measured = pd.DataFrame({"separation": [3e-6, 2e-6, 1e-6, 0.0], "force": [0.0, 1e-4, 2e-4, 4e-4]})
+    with pytest.raises(rm.SceneError, match="cannot be fitted, for it has no expected law"):
+        rm.fit(measured, table, "nominal.radius")
+
+
+def test_contacts_at_the_border_of_the_patch_are_warned_of() -> None:
+    path = {"separation": [0.0, "-2 um"]}
+    with pytest.warns(rm.LimitWarning, match="contacts reach the border of the patch under the curved body"):
+        rm.run(curved(**DRAWN, nominal={"radius": "1 m"}, path=path))
+    remarks = rm.run(curved(**DRAWN, nominal={"radius": "5 mm"}, path=path)).attrs.get("warnings", "")
+    assert "border" not in remarks
+
+
+def test_the_plan_foresees_those_that_the_body_touches_first() -> None:
+    scene = read(curved(**DRAWN, nominal={"radius": "5 mm"}))
+    (foreseen,) = foresee_cells(make_plan(scene)).foreseen
+    (made,) = rm.run(curved(interaction=PAIRS, batch={"estimator": "stratified"}, nominal={"radius": "5 mm"})).force
+    assert foreseen.law.variables["force"].max() == pytest.approx(float(made.max()), rel=0.05)
+    assert touching(make_plan(scene).cells[0]) < 0.2 * 1000
+    assert np.isnan(foreseen.fraction_at_pull_off)

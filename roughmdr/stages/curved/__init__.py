@@ -6,7 +6,7 @@ dimensionality reduction (``bulk.py``), on rings (``rings.py``). ``equilibrium.p
 approach, ``follow.py`` goes along the path, ``law.py`` refines the rings until the force is right.
 """
 
-from roughmdr.stages.curved.law import compute
+from roughmdr.stages.curved.law import compute, with_body
 from roughmdr.stages.curved.refine import Layer
 
-__all__ = ["Layer", "compute"]
+__all__ = ["Layer", "compute", "with_body"]

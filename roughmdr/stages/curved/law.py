@@ -8,7 +8,6 @@ import numpy as np
 from roughmdr import expected
 from roughmdr.aggregate import LoadingPath, LoadSeparation
 from roughmdr.aggregate.totals import AREA, COUNT, RADIUS
-from roughmdr.asperity.validity import ValidityLimits
 from roughmdr.ensemble.ensemble import Ensemble
 from roughmdr.errors import OutOfRange
 from roughmdr.expected.pull_off import ends_apart
@@ -50,12 +49,12 @@ def compute(layer: Layer, shape: Shape, path: LoadingPath, *, error: float, vari
     late = separation[pressed <= error_of_layer.named["trusted_separation"]]
     trusted = {"trusted_separation": float(late.max()) if late.size else math.nan}
     own |= local.variables
+    local = with_body(local._replace(variables=own), shape)
     return local._replace(
         variables={name: own[name] for name in names},
         numerical_error=numerical,
         model_error=error_of_layer._replace(named=error_of_layer.named | trusted),
         pull_off=pull_off_of(body, places, separation, error),
-        extremes=_extremes(local.extremes, shape, own["nominal_contact_radius"]),
         warnings=(*local.warnings, *_remarks(solution.error, error, own["contact_count"])),
     )
 
@@ -102,12 +101,12 @@ def _rule_error(solution: Solution, law: LocalLaw) -> float:
     return solution.rule_error * max(largest / peak, 1.0) if peak > 0.0 else 0.0
 
 
-def _extremes(of_asperities: ValidityLimits, shape: Shape, radius: Floats) -> ValidityLimits:
-    """Return the extremes of contacts with those of the body itself, at its nominal contact radii [m]."""
-    widest = np.array([radius.max(initial=0.0)])
-    of_body = Ensemble.alike(shape, np.zeros(1), {}, math.inf).validity_limits(widest)
-    slope, extent = max(of_asperities.slope, of_body.slope), max(of_asperities.extent, of_body.extent)
-    return of_asperities._replace(slope=slope, extent=extent)
+def with_body(law: LoadSeparation, shape: Shape) -> LoadSeparation:
+    """Return the law with the extremes of the body itself, at its nominal contact radii, among its own."""
+    widest = np.array([np.nanmax(law.variables["nominal_contact_radius"], initial=0.0)])
+    of_body, of_contacts = Ensemble.alike(shape, np.zeros(1), {}, math.inf).validity_limits(widest), law.extremes
+    slope, extent = max(of_contacts.slope, of_body.slope), max(of_contacts.extent, of_body.extent)
+    return law._replace(extremes=of_contacts._replace(slope=slope, extent=extent))
 
 
 def _remarks(error: float, asked: float, contacts: Floats) -> Iterator[str]:
