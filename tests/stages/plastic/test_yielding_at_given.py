@@ -4,6 +4,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from forms import large
 from scenes import scene
 
 import roughmdr as rm
@@ -47,7 +48,7 @@ def test_the_error_of_the_force_by_interaction_falls_with_the_softness() -> None
     np.testing.assert_allclose(soft.interaction_error, share * (1.4 * np.sqrt(fraction) + fraction), rtol=0.1)
 
 
-@pytest.mark.parametrize("model", MODELS)
+@pytest.mark.parametrize("model", [large(each) if each == "kogut-etsion" else each for each in MODELS])
 def test_errors_of_areas_are_told_on_loading_alone(model: str) -> None:
     load = {"force": {"start": "0.1 mN", "stop": "2 mN", "steps": 5}, "unload": True}
     result = law(1e5, model, path=load)
