@@ -317,6 +317,7 @@ def test_the_unit_of_length_does_not_matter(work: float, unit: float) -> None:
         np.testing.assert_allclose(sunk, unit * u, rtol=1e-13)
 
 
+@large_where_compiled
 @settings(deadline=None, max_examples=40)
 @given(
     log_flat=st.floats(-9.0, 0.0),

@@ -28,9 +28,16 @@ def told(result: Any, given: str, values: Any, branch: str = "loading") -> dict[
     return {str(name): there[name].to_numpy() for name in there if str(name).endswith("_model_error")}
 
 
+@pytest.fixture(scope="module")
+def hard_and_elastic() -> tuple[Any, Any]:
+    return law(1e15), law(None)
+
+
 @pytest.mark.parametrize("given", ["force", "separation", "contact_fraction"])
-def test_where_nothing_yields_errors_are_those_of_elastic_contacts(given: str) -> None:
-    hard, elastic = law(1e15), law(None)
+def test_where_nothing_yields_errors_are_those_of_elastic_contacts(
+    hard_and_elastic: tuple[Any, Any], given: str
+) -> None:
+    hard, elastic = hard_and_elastic
     values = {"force": 0.3 * float(elastic.force.max()), "separation": 1.5e-6, "contact_fraction": 0.01}[given]
     found, expected = (told(each, given, values) for each in (hard, elastic))
     assert found.keys() == expected.keys()
