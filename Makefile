@@ -17,7 +17,7 @@ UNCOMPILED := $(addprefix tests/,asperity kernels numerics shapes springs $(adds
   $(addprefix aggregate/test_,few_searches machine shapes_in_ensembles sum) \
   $(addprefix interaction/test_,close contacts green jkr_parts jkr_shapes)))
 
-.PHONY: demo test test-all tests sums compiled uncompiled docs studies studies-full installed setup lint lock release
+.PHONY: demo test test-all tests sums others uncompiled docs studies studies-full installed setup lint lock release
 .PHONY: clean
 
 demo: installed
@@ -25,19 +25,19 @@ demo: installed
 	@$(BIN)/roughmdr run pipelines/scenes/rubber_on_glass.toml -o results/rubber_on_glass.nc --fresh
 	@$(BIN)/roughmdr plot results/rubber_on_glass.nc -o results/rubber_on_glass.png --with-expected
 
-# Style and types beside the first tests, the docs, which find their code compiled, beside the uncompiled ones.
+# First what compiles for all that follows, beside what compiles nothing; then all that finds its code compiled.
 test: setup
-	@$(MAKE) --no-print-directory -j2 lint compiled
-	@$(MAKE) --no-print-directory -j2 docs uncompiled
+	@$(MAKE) --no-print-directory -j2 sums lint uncompiled
+	@$(MAKE) --no-print-directory -j2 others docs
 
 # The tests, and those of kernels, sums and shapes again where nothing is compiled.
-tests: compiled uncompiled
+tests: sums others uncompiled
 
 # One process compiles what most tests need; the workers, who would each compile it, find it on disk.
 sums: setup
 	$(PYTEST) tests/aggregate
 
-compiled: sums
+others: setup
 	$(TESTS) --dist loadfile --ignore tests/aggregate
 
 uncompiled: setup
