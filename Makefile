@@ -11,34 +11,41 @@ READY  := $(VENV)/ready
 # Images of containers often forbid bytecode; each of many processes would compile all that it imports anew.
 export PYTHONDONTWRITEBYTECODE :=
 # Workers share the cores: threads of BLAS in each would wait for each other.
-TESTS  := OPENBLAS_NUM_THREADS=1 $(BIN)/python -m pytest -n auto
-UNCOMPILED := $(addprefix tests/,asperity kernels numerics shapes springs \
-  $(addsuffix .py,$(addprefix aggregate/test_,few_searches machine shapes_in_ensembles sum) \
+PYTEST := OPENBLAS_NUM_THREADS=1 $(BIN)/python -m pytest
+TESTS  := $(PYTEST) -n auto
+UNCOMPILED := $(addprefix tests/,asperity kernels numerics shapes springs $(addsuffix .py,pipelines/test_one_asperity \
+  $(addprefix aggregate/test_,few_searches machine shapes_in_ensembles sum) \
   $(addprefix interaction/test_,close contacts green jkr_parts jkr_shapes)))
 
-.PHONY: demo test test-all tests compiled uncompiled docs studies studies-full installed setup lint lock release clean
+.PHONY: demo test test-all tests sums others uncompiled docs studies studies-full installed setup lint lock release
+.PHONY: clean
 
 demo: installed
 	@mkdir -p results
 	@$(BIN)/roughmdr run pipelines/scenes/rubber_on_glass.toml -o results/rubber_on_glass.nc --fresh
 	@$(BIN)/roughmdr plot results/rubber_on_glass.nc -o results/rubber_on_glass.png --with-expected
 
-# Style and types beside the tests, then the docs, which find their code compiled, beside the uncompiled tests.
+# First what compiles for all that follows, beside what compiles nothing; then all that finds its code compiled.
 test: setup
-	@$(MAKE) --no-print-directory -j2 lint compiled
-	@$(MAKE) --no-print-directory -j2 docs uncompiled
+	@$(MAKE) --no-print-directory -j2 sums lint uncompiled
+	@$(MAKE) --no-print-directory -j2 others docs
 
 # The tests, and those of kernels, sums and shapes again where nothing is compiled.
-tests: compiled uncompiled
+tests: sums others uncompiled
 
-compiled: setup
-	$(TESTS) --dist loadfile
+# One process compiles what most tests need; the workers, who would each compile it, find it on disk.
+sums: setup
+	$(PYTEST) tests/aggregate
+
+others: setup
+	$(TESTS) --dist loadfile --ignore tests/aggregate
 
 uncompiled: setup
 	NUMBA_DISABLE_JIT=1 $(TESTS) --dist loadfile $(UNCOMPILED)
 
 test-all: test
 	$(TESTS) --dist worksteal -m large
+	NUMBA_DISABLE_JIT=1 $(TESTS) --dist worksteal -m elsewhere $(UNCOMPILED)
 
 docs: setup
 	$(BIN)/sphinx-build -q -W --keep-going -b html docs docs/_build/html

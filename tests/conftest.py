@@ -99,8 +99,28 @@ def _all_but_few(cases: list[pytest.Item], count: int, draw: random.Random) -> l
     return [item for i, item in enumerate(cases) if i not in stay]
 
 
+def _is_run_elsewhere(item: pytest.Function) -> bool:
+    """Return whether a case that names shapes is run compiled, where this run is not, or uncompiled, where this is."""
+    folder = item.path.relative_to(Path(__file__).parent).parts[0]
+    uncompiled = bool(numba.config.DISABLE_JIT)
+    if folder not in COMPILING or (uncompiled and any(map(item.get_closest_marker, ("uncompiled", "skipif")))):
+        return False
+    given = item.callspec.params.values() if hasattr(item, "callspec") else ()
+    named = [item.path.stem, item.name, *given]
+    shapes = _shapes_in(named)
+    if not shapes:
+        return False
+    compiled = shapes <= COMPILED
+    if compiled and shapes != {"paraboloid"}:
+        compiled = folder != "interaction" and not re.search("dugdale|cohesive", str(named))
+    return compiled == uncompiled
+
+
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Mark long forms: most cases of a test marked ``few(count)``; where functions are compiled, other shapes."""
+    """Mark long forms: most cases of a test marked ``few(count)``, and those that the other of both runs has.
+
+    Shapes that are compiled at once are run compiled, the others uncompiled, and what names none is run in both.
+    """
     tests = defaultdict(list)
     for item in items:
         if item.get_closest_marker("few") and not item.get_closest_marker("large"):
@@ -108,14 +128,12 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     for name, cases in tests.items():
         for item in _all_but_few(cases, cases[0].get_closest_marker("few").args[0], random.Random(name)):
             item.add_marker("large")
-    for item in [] if numba.config.DISABLE_JIT else items:
-        folder = item.path.relative_to(Path(__file__).parent).parts[0]
-        if folder in COMPILING and isinstance(item, pytest.Function):
-            given = item.callspec.params.values() if hasattr(item, "callspec") else ()
-            named = [item.path.stem, item.name, *given]
-            closed = folder == "interaction" or re.search("dugdale|cohesive", str(named))
-            if not _shapes_in(named) <= ({"paraboloid"} if closed else COMPILED):
+    for item in items:
+        if isinstance(item, pytest.Function) and not item.get_closest_marker("large"):
+            left_out = not numba.config.DISABLE_JIT and item.get_closest_marker("uncompiled")
+            if left_out or _is_run_elsewhere(item):
                 item.add_marker("large")
+                item.add_marker("elsewhere")
 
 
 @pytest.fixture(scope="module")

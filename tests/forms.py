@@ -1,9 +1,5 @@
 """Tests and cases that are long forms, which ``make test-all`` runs."""
 
-from collections.abc import Callable
-from typing import Any
-
-import numba
 import pytest
 from _pytest.mark import ParameterSet
 
@@ -17,6 +13,5 @@ def large(*values: object) -> ParameterSet:
     return pytest.param(*values, marks=pytest.mark.large)
 
 
-def large_where_compiled(test: Callable[..., Any]) -> Callable[..., Any]:
-    """Return a test that runs at once where nothing is compiled, and is a long form where functions are."""
-    return test if numba.config.DISABLE_JIT else pytest.mark.large(test)
+large_where_compiled = pytest.mark.uncompiled
+"""Marks a test that runs at once where nothing is compiled, and is a long form where functions are."""

@@ -12,6 +12,7 @@ import tomli_w
 import xarray as xr
 from click.testing import CliRunner
 from command import ROUGHMDR, roughmdr
+from forms import large
 from scenes import ASPERITIES, ensemble, scene
 
 import roughmdr as rm
@@ -135,11 +136,15 @@ def test_a_scene_in_python_takes_arrays_tuples_and_numpy_numbers() -> None:
     assert read(asked) is asked
 
 
-def test_whole_numbers_are_numbers() -> None:
-    for shape in (rm.Paraboloid(radius=1), rm.Cone(slope=1), rm.PowerLaw(exponent=2, width=1, rise=1)):
-        whole = rm.indent(shape, effective_modulus=1_000_000, work=1, indentation=1)
-        floats = type(shape)(**{name: float(value) for name, value in shape.parameters.items()})
-        assert whole.equals(rm.indent(floats, effective_modulus=1e6, work=1.0, indentation=1.0))
+@pytest.mark.parametrize(
+    "shape",
+    [rm.Paraboloid(radius=1), large(rm.Cone(slope=1)), large(rm.PowerLaw(exponent=2, width=1, rise=1))],
+    ids=str,
+)
+def test_whole_numbers_are_numbers(shape: rm.Paraboloid) -> None:
+    whole = rm.indent(shape, effective_modulus=1_000_000, work=1, indentation=1)
+    floats = type(shape)(**{name: float(value) for name, value in shape.parameters.items()})
+    assert whole.equals(rm.indent(floats, effective_modulus=1e6, work=1.0, indentation=1.0))
 
 
 def test_one_mistake_is_said_once_and_counted() -> None:

@@ -52,10 +52,20 @@ def test_an_unpickled_table_is_computed_to_the_same_bits() -> None:
     radii = np.linspace(0.0, 3e-6, 9)
     table = rm.Tabulated(radii, radii**2 / 2e-5)
     again = pickle.loads(pickle.dumps(table))
+    for name in ("f", "g", "G"):
+        assert np.array_equal(getattr(again, name)(0.7 * radii), getattr(table, name)(0.7 * radii))
+
+
+@pytest.mark.large
+def test_contacts_of_an_unpickled_table_are_computed_to_the_same_bits() -> None:
+    radii = np.linspace(0.0, 3e-6, 9)
+    table = rm.Tabulated(radii, radii**2 / 2e-5)
+    again = pickle.loads(pickle.dumps(table))
     contacts = [rm.indent(each, effective_modulus="1 GPa", indentation=["10 nm", "100 nm"]) for each in (table, again)]
     assert contacts[0].identical(contacts[1])
 
 
+@pytest.mark.few(3)
 @pytest.mark.parametrize("shape", EXAMPLES, ids=IDS)
 def test_profiles_take_units(shape: Shape) -> None:
     """Strings with units are lengths of contact radii, numbers metres; another dimension is refused."""

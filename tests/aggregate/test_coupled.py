@@ -114,14 +114,18 @@ def test_without_interaction_nothing_of_it_is_imported(tmp_path: Path, interacti
         assert not sorted((solvers | {"roughmdr.aggregate.coupled"}) & loaded)
 
 
-@pytest.mark.parametrize(("seed", "at_rest"), [(1, False), (1, True), (3, True)])
+@pytest.mark.parametrize(
+    ("shape", "seed", "at_rest"),
+    [("paraboloid", 1, False), *(large("truncated_paraboloid", *case) for case in ((1, False), (1, True), (3, True)))],
+)
 def test_contacts_that_do_not_come_to_rest_are_marked(
-    monkeypatch: pytest.MonkeyPatch, seed: int, at_rest: bool
+    monkeypatch: pytest.MonkeyPatch, shape: str, seed: int, at_rest: bool
 ) -> None:
     """With their error stated; those of truncated paraboloids without overlap, at 2.4 % of contact, come to rest."""
     section = {
-        **{"source": "random", "count": 60, "patch": "62 um", "placement": "random", "shape": "truncated_paraboloid"},
-        **{"radius": "10 um", "flat_radius": "0.5 um", "height": {"distribution": "normal", "std": "0.1 um"}},
+        **{"source": "random", "count": 60, "patch": "62 um", "placement": "random", "shape": shape},
+        **{"radius": "10 um", "height": {"distribution": "normal", "std": "0.1 um"}},
+        **({"flat_radius": "0.5 um"} if shape == "truncated_paraboloid" else {}),
     }
     if not at_rest:
 

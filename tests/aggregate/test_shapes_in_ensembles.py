@@ -232,6 +232,7 @@ def test_a_common_profile_is_stored_and_read_back(tmp_path: Any) -> None:
         xr.testing.assert_identical(*laws)
 
 
+@large_where_compiled
 def test_what_leaves_the_theory_is_said_with_its_numbers() -> None:
     with pytest.warns(rm.LimitWarning, match=r"slopes of up to 1 at the edge"):
         rm.indent(rm.Cone(1.0), effective_modulus=1e9, indentation=1e-9)
@@ -251,6 +252,7 @@ def test_what_leaves_the_theory_is_said_with_its_numbers() -> None:
     assert "warnings" not in rm.indent(rm.Paraboloid(1e-6), effective_modulus=1e9, indentation=1e-9).attrs
 
 
+@large_where_compiled
 def test_what_a_shape_cannot_do_is_refused() -> None:
     with pytest.raises(rm.ShapeError, match="flat punch"):
         rm.indent(rm.FlatPunch(1e-6), effective_modulus=1e9, contact_radius=1e-6)

@@ -133,7 +133,7 @@ def test_order_and_asperities_out_of_reach_change_no_bit(work: float) -> None:
 @pytest.mark.parametrize("work", [0.0, W])
 def test_only_asperities_within_reach_are_visited(work: float) -> None:
     rng = np.random.default_rng(17)
-    data = ensemble(rng.normal(0.0, 1e-6, 5000), radius=5e-5)
+    data = ensemble(rng.normal(0.0, 1e-6, 1000), radius=5e-5)
     fold = -float(rm.pull_off(rm.Paraboloid(5e-5), effective_modulus=E, work=work, control="displacement").indentation)
     way_in = np.linspace(4e-6, 0.0, 50)
     route = LoadingPath.along(way_in, unload=True, adhesive=work > 0.0)

@@ -1,5 +1,6 @@
 """Adhesion "auto" and the range of the attraction, for one contact and for an ensemble in Python."""
 
+import numba
 import numpy as np
 import pytest
 import xarray as xr
@@ -74,6 +75,7 @@ def test_auto_without_adhesion_is_hertz_and_where_jkr_has_no_contact_dugdale() -
 
 
 @pytest.mark.few(1)
+@pytest.mark.skipif(numba.config.DISABLE_JIT, reason="a run takes seconds uncompiled, and the choice is tested alone")
 @pytest.mark.parametrize("tabor", [0.3, 3.0, 300.0, 3e4])
 def test_the_load_of_an_ensemble_takes_the_model_that_a_run_takes(tabor: float) -> None:
     adhesion = {"model": "auto", "work": W, "strength": strength_at(tabor), "error": 0.05}

@@ -6,6 +6,7 @@ import numba
 import numpy as np
 import pytest
 import xarray as xr
+from forms import large_where_compiled
 from hypothesis import given, settings, strategies as st
 
 import roughmdr as rm
@@ -35,6 +36,7 @@ def turns(shape: rm.TruncatedCone, work: float) -> np.ndarray:
     return delta[1:-1][steps[:-1] != steps[1:]]
 
 
+@large_where_compiled
 @pytest.mark.parametrize("case", BRANCHED)
 def test_two_branches(case: str) -> None:
     shape, tension = BRANCHED[case]
@@ -88,6 +90,7 @@ def test_between_pull_off_and_touch_there_are_two(shape: rm.Paraboloid) -> None:
             assert float(inner.indentation) == pytest.approx(part * float(off.indentation), rel=1e-11)
 
 
+@large_where_compiled
 def test_beyond_pull_off_there_is_none_and_pressed_there_is_one() -> None:
     for shape in (*ONE_BRANCH, rm.FlatPunch(b)):
         off = rm.pull_off(shape, effective_modulus=E, work=1e-3, control="displacement")

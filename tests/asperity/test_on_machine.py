@@ -150,6 +150,7 @@ def test_a_curve_looked_at_point_by_point_says_the_same(name: str) -> None:
                 assert float(found.contact_radius[i]) == pytest.approx(float(exact.a), rel=1e-8)
 
 
+@large_where_compiled
 def test_where_the_stiffness_has_two_extremes_a_branch_has_two_parts_on_a_spring() -> None:
     """With tau^2 = a/a_c, k = 2 E* a (tau^0.2 - 3)/(tau^0.2 - 1): extremes at tau^0.2 = 1.9 -+ sqrt(0.61)."""
     shape, curve = twins()["two parts"]
@@ -186,6 +187,7 @@ def test_a_part_is_found_however_short_it_is(beyond: float) -> None:
     assert [parts(trough * (1.0 + sign * beyond)) for sign in (-1.0, 1.0)] == [2, 1]
 
 
+@large_where_compiled
 @pytest.mark.few(1)
 @pytest.mark.parametrize("name", TWINS + TWINS_DUGDALE)
 def test_what_goes_out_comes_back(name: str) -> None:

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 import scipy.stats
+import xarray as xr
 from forms import large
 from scenes import ASPERITIES, ensemble
 
@@ -81,22 +82,37 @@ def test_the_same_seed_gives_the_same_bits_and_streams_do_not_mix() -> None:
     np.testing.assert_allclose(doubled.height, 2.0 * base.height, rtol=1e-15)
 
 
+def of_shape(shape: str, parameters: dict[str, object]) -> xr.Dataset:
+    """Asperities of a shape, which have its parameters."""
+    section = {key: value for key, value in ASPERITIES.items() if key != "radius"}
+    data = rm.generate({**section, "patch": "10 cm", "shape": shape, **parameters}, seed=1)
+    assert set(data.data_vars) == {"height", *parameters}
+    return data
+
+
+CONES = {"slope": {"distribution": "uniform", "loc": 0.1, "scale": 0.2}, "flat_radius": "1 um"}
+POWERS = {"exponent": {"distribution": "uniform", "loc": 1, "scale": 2}, "coefficient": 1e3}
+
+
+def test_parameters_of_other_shapes_are_drawn() -> None:
+    of_shape("truncated_cone", CONES)
+    of_shape("power_law", POWERS)
+
+
 @pytest.mark.parametrize(
     ("shape", "parameters"),
     [
-        ("truncated_cone", {"slope": {"distribution": "uniform", "loc": 0.1, "scale": 0.2}, "flat_radius": "1 um"}),
+        ("sphere", {"radius": {"distribution": "uniform", "loc": "1 mm", "scale": "1 mm"}}),
+        large("truncated_cone", CONES),
         large(
             "power_law",
             {"exponent": 3, "width": "10 um", "rise": {"distribution": "lognormal", "mean": "1 um", "std": "1 um"}},
         ),
-        large("power_law", {"exponent": {"distribution": "uniform", "loc": 1, "scale": 2}, "coefficient": 1e3}),
+        large("power_law", POWERS),
     ],
 )
 def test_other_shapes(shape: str, parameters: dict[str, object]) -> None:
-    section = {key: value for key, value in ASPERITIES.items() if key != "radius"}
-    data = rm.generate({**section, "patch": "10 cm", "shape": shape, **parameters}, seed=1)
-    assert set(data.data_vars) == {"height", *parameters}
-    law = rm.load_separation(data, separation=[1e-6, 0.0], effective_modulus=1e7, work=0.01)
+    law = rm.load_separation(of_shape(shape, parameters), separation=[1e-6, 0.0], effective_modulus=1e7, work=0.01)
     assert float(law.force[1]) > float(law.force[0])
 
 

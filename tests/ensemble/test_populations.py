@@ -31,6 +31,7 @@ CUT = [
     ({"distribution": "normal", "std": UM, "min": 6 * UM}, scipy.stats.truncnorm(6, np.inf, scale=UM)),
     ({"distribution": "normal", "mean": UM, "std": UM, "min": 0, "max": 9 * UM}, scipy.stats.truncnorm(-1, 8, UM, UM)),
     ({"distribution": "expon", "loc": 0, "scale": UM, "max": 2 * UM}, scipy.stats.truncexpon(2, scale=UM)),
+    ({"distribution": "lognorm", "s": 0.4, "loc": 0, "scale": UM, "min": 0}, scipy.stats.lognorm(0.4, scale=UM)),
 ]
 
 

@@ -426,6 +426,7 @@ def test_the_rule_is_left_whole_where_its_parts_do_not_hold() -> None:
     assert not holds(CASES[0], np.array([3.0, -0.2, 2.9]) * UM)
 
 
+@pytest.mark.large
 def test_asperities_of_one_shape_lose_the_energy_of_their_sum() -> None:
     """The shape is one whose energies compiled code calls by address."""
     path = np.array([3.0, -0.2, 0.2, 3.0]) * UM

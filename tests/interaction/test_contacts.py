@@ -23,7 +23,7 @@ EXAMPLES: dict[str, Shape] = {
     "paraboloid": rm.Paraboloid(radius=0.7),
     "cone": rm.Cone(slope=0.3),
     "power_law": rm.PowerLaw(exponent=4.0, coefficient=2.0),
-    "rough tip": rm.PowerLaw(exponent=1.3, width=0.2, rise=0.05),
+    "rough power_law": rm.PowerLaw(exponent=1.3, width=0.2, rise=0.05),
     "sphere": rm.Sphere(radius=0.9),
     "truncated_cone": rm.TruncatedCone(slope=0.3, flat_radius=0.05),
     "truncated_paraboloid": rm.TruncatedParaboloid(radius=0.8, flat_radius=0.06),

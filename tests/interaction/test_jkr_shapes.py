@@ -22,7 +22,7 @@ SHAPES: dict[str, dict[str, Any]] = {
 NAMES = ["force", "contact_area", "contact_count", "stiffness", "energy", "dissipated_energy", "contact_radius_sum"]
 
 
-@pytest.mark.few(2)
+@pytest.mark.few(1)
 @pytest.mark.parametrize("shape", SHAPES)
 def test_contacts_far_apart_are_independent(shape: str) -> None:
     section = {

@@ -100,7 +100,7 @@ def test_without_adhesion_contact_begins_at_0(shape: rm.PowerLaw) -> None:
         assert contact[name][3] > 0.0
 
 
-@pytest.mark.few(8)
+@pytest.mark.few(4)
 @every_shape
 @every_work
 def test_no_contact_holds_a_stronger_pull(shape: rm.PowerLaw, work: float) -> None:
@@ -109,7 +109,7 @@ def test_no_contact_holds_a_stronger_pull(shape: rm.PowerLaw, work: float) -> No
         indent(shape, work, force=[0.0, pull])
 
 
-@pytest.mark.few(8)
+@pytest.mark.few(4)
 @every_shape
 @pytest.mark.parametrize("effective_modulus", [1e3, 3.3e4, 7.1e6, 1.9e9, 5.7e12])
 def test_the_pull_off_force_that_is_stated_is_the_least_that_holds(

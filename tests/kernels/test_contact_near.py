@@ -4,6 +4,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from forms import large_where_compiled
 
 from roughmdr.kernels.adhesion import Adhesion
 from roughmdr.kernels.choose import choose
@@ -27,6 +28,7 @@ def searched(x: float, kernels: Any, params: Any) -> np.ndarray[Any, Any]:
     return np.array([state, *kernels.radius_force_stiffness(state, params)])
 
 
+@large_where_compiled
 @pytest.mark.parametrize("name", SIMILAR)
 def test_those_that_are_certain_are_right(name: str) -> None:
     kernels, params = prepared(name)
@@ -57,6 +59,7 @@ def test_their_errors_are_of_second_order_and_stated(name: str, x: float) -> Non
     assert (errors[0][above_rounding] / errors[1][above_rounding]).min() > 80.0
 
 
+@large_where_compiled
 def test_next_to_a_kink_none_is_certain() -> None:
     kernels, params = prepared("rounded_cone")
     kink = kernels.reduced_control(1.0, params)

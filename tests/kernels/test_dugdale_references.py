@@ -196,7 +196,7 @@ def test_pull_off_is_where_the_contact_ends(case: Case, control: Control) -> Non
 
 
 @large_where_compiled
-@pytest.mark.few(2)
+@pytest.mark.few(1)
 @pytest.mark.parametrize("control", CONTROLS)
 @pytest.mark.parametrize("unit", [1.0, 1e-3])
 def test_a_punch_with_a_sharp_edge_pulls_off_as_a_flat_one(unit: float, control: Control) -> None:

@@ -5,6 +5,7 @@ import math
 import mpmath as mp
 import numpy as np
 import pytest
+from forms import large_where_compiled
 from hypothesis import given, settings, strategies as st
 
 import roughmdr as rm
@@ -36,6 +37,7 @@ def test_the_ends_of_the_root() -> None:
     assert root(5e-324, 2.0) == pytest.approx(math.sqrt(5e-324), rel=4 * _ROUNDING)
 
 
+@large_where_compiled
 @pytest.mark.few(1)
 @pytest.mark.parametrize("length", [1e-9, 1e-6, 1.0])
 def test_a_sum_is_that_of_its_contacts(length: float) -> None:

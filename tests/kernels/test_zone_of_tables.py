@@ -5,6 +5,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
+from forms import large_where_compiled
 from scipy.integrate import quad
 
 import roughmdr as rm
@@ -50,6 +51,7 @@ def by_quadrature(kernels: ProfileKernels, row: Floats, a: float, c: float) -> F
     return found
 
 
+@large_where_compiled
 @pytest.mark.few(2)
 @pytest.mark.parametrize("name", SHAPES)
 @pytest.mark.parametrize("wide", [0.03, 1.0, 30.0])

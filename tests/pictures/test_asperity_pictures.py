@@ -35,7 +35,8 @@ CASES: dict[str, tuple[Shape, Adhesion, float]] = {
     "truncated cone": (rm.TruncatedCone(slope=0.17, flat_radius=6e-6), Adhesion(0.01), 1e-6),
     "table": (rm.Tabulated(TABLE, 0.07 * TABLE + TABLE**2 / 90e-6), JKR, 2e-6),
 }
-NAMES = [large(case) if case == "cone, range" else case for case in CASES]
+NAMES = [large(case) if case.startswith(("cone", "truncated cone", "table")) else case for case in CASES]
+"""Names of all cases; long forms are those of shapes that nothing else here compiles."""
 
 
 def contact_of(shape: Shape, adhesion: Adhesion, indentation: float) -> tuple[OneContact, float]:

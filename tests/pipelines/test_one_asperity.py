@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 import xarray as xr
 from figures import one_asperity as study
+from forms import large_where_compiled
 from scipy.optimize import brentq
 from scipy.special import digamma, gamma
 
@@ -15,6 +16,7 @@ import roughmdr as rm
 from roughmdr.storage.labelled import Labelled
 from roughmdr.storage.netcdf_store import write_netcdf
 
+pytestmark = large_where_compiled
 PIPELINES = Path(__file__).parents[2] / "pipelines"
 
 

@@ -93,7 +93,7 @@ def test_the_stated_errors_hold_of_the_mean_of_realisations(tmp_path: Path) -> N
     assert row[1] == pytest.approx(float(runs.mean()), rel=1e-9)
 
 
-@pytest.mark.few(2)
+@pytest.mark.few(1)
 @pytest.mark.parametrize(
     ("turns", "rows"),
     [

@@ -8,6 +8,7 @@ import sys
 import tomllib
 from collections.abc import Iterator
 from contextlib import chdir
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -18,7 +19,7 @@ from command import roughmdr, said
 from hypothesis import HealthCheck, given, settings, strategies as st
 from scenes import ASPERITIES, scene
 from studies.random_scenes.scenes import scenes, write_inputs
-from test_mutations import ALL, BASES, FEW_AND_ALL, Mutation
+from test_mutations import BASES, FEW_AND_ALL, Mutation, mutations
 
 import roughmdr as rm
 from roughmdr.errors import RoughmdrError
@@ -29,19 +30,27 @@ from roughmdr.schema.units import _BASES, DIMENSIONLESS, _table, quantity, quant
 
 ROOT = Path(__file__).parents[2]
 SCENES = [*sorted((ROOT / "pipelines" / "scenes").glob("*.toml")), Path(rm.__file__).parent / "starter.toml"]
-SCHEMA = scene_schema()
-VALIDATOR = jsonschema.Draft202012Validator(SCHEMA)
 TAPLO = Path(sys.executable).with_name("taplo")
 
 
+@cache
+def schema() -> dict[str, Any]:
+    return scene_schema()
+
+
+@cache
+def validator() -> jsonschema.Draft202012Validator:
+    return jsonschema.Draft202012Validator(schema())
+
+
 def faults(table: dict[str, Any]) -> list[str]:
-    return [error.message for error in VALIDATOR.iter_errors(table)]
+    return [error.message for error in validator().iter_errors(table)]
 
 
 @pytest.mark.large
 def test_it_is_a_schema_of_its_draft() -> None:
-    assert SCHEMA["$schema"] == "https://json-schema.org/draft/2020-12/schema"
-    jsonschema.Draft202012Validator.check_schema(SCHEMA)
+    assert schema()["$schema"] == "https://json-schema.org/draft/2020-12/schema"
+    jsonschema.Draft202012Validator.check_schema(schema())
 
 
 @pytest.mark.parametrize("path", SCENES, ids=lambda path: path.stem)
@@ -67,13 +76,13 @@ def told(mutation: Mutation) -> bool:
 @pytest.mark.few(1)
 @pytest.mark.parametrize("base", FEW_AND_ALL)
 def test_one_thing_wrong_is_refused(base: str) -> None:
-    for mutation in [each for each in ALL if each.base == base and told(each)]:
+    for mutation in [each for each in mutations() if each.base == base and told(each)]:
         assert faults(mutation.table), str(mutation)
 
 
 @pytest.mark.parametrize("base", FEW_AND_ALL)
 def test_a_number_out_of_its_bounds_is_refused(base: str) -> None:
-    for mutation in [each for each in ALL if each.base == base and each.what == "negative"]:
+    for mutation in [each for each in mutations() if each.base == base and each.what == "negative"]:
         if mutation.key != "asperities.radius.mean":  # only a lognormal mean must be above 0
             assert faults(mutation.table), str(mutation)
 
@@ -168,7 +177,7 @@ def keys(schema: dict[str, Any], at: str = "") -> Iterator[tuple[str, dict[str, 
 
 
 def test_every_key_is_described_with_its_unit_and_default() -> None:
-    told = dict(keys(SCHEMA))
+    told = dict(keys(schema()))
     assert len(told) > 90
     for key, value in told.items():
         assert len(value["description"]) > 5, key
@@ -180,7 +189,7 @@ def test_every_key_is_described_with_its_unit_and_default() -> None:
         assert len(told[key]["enum"]) > 1
     for name in ("distribution", "distribution_of_m"):
         assert {"normal", "lognormal", "weibull_min"} <= set(
-            SCHEMA["$defs"][name]["properties"]["distribution"]["enum"]
+            schema()["$defs"][name]["properties"]["distribution"]["enum"]
         )
 
 
@@ -192,7 +201,7 @@ def test_no_table_of_it_takes_any_key() -> None:
             for value in schema.values():
                 check(value)
 
-    check({name: value for name, value in SCHEMA.items() if name != "then"})
+    check({name: value for name, value in schema().items() if name != "then"})
 
 
 @pytest.mark.large
@@ -277,7 +286,9 @@ def test_taplo_finds_all_scenes_valid_and_wrong_ones_not(tmp_path: Path) -> None
         right[-1].write_text(tomli_w.dumps(BASES[base]))
     done = linted("--schema", schema.as_uri(), *right)
     assert done.returncode == 0, done.stderr[:3000]
-    some = [each for each in ALL if each.what in ("misspelt", "unknown name", "unit", "truth") and told(each)][::40]
+    some = [each for each in mutations() if each.what in ("misspelt", "unknown name", "unit", "truth") and told(each)][
+        ::40
+    ]
     wrong = [tmp_path / f"wrong_{number}.toml" for number in range(len(some))]
     for path, mutation in zip(wrong, some, strict=True):
         path.write_text(tomli_w.dumps(mutation.table))

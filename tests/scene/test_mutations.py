@@ -4,6 +4,7 @@ import contextlib
 import copy
 import re
 from collections.abc import Callable, Iterator
+from functools import cache
 from pathlib import Path
 from typing import Any, NamedTuple, get_origin
 
@@ -181,7 +182,7 @@ def misspelt(base: str, key: str) -> Mutation:
     return Mutation(base, ".".join([*outer, wrong]), "misspelt", table)
 
 
-def mutations() -> Iterator[Mutation]:
+def _mutations() -> Iterator[Mutation]:
     for base, table in BASES.items():
         for key in paths(table):
             value = value_of(table, key)
@@ -212,7 +213,12 @@ def mutations() -> Iterator[Mutation]:
         yield Mutation(base, f"sweep.{key}", "sweep", table)
 
 
-ALL = list(mutations())
+@cache
+def mutations() -> list[Mutation]:
+    """All scenes with one thing wrong; made when they are needed, since every process of the tests reads this file."""
+    return list(_mutations())
+
+
 FEW = ("every section", "pairwise", "cones", "independent", "a surface", "a load held", "preload", "viscoelastic")
 FEW_AND_ALL = [base if base in FEW else large(base) for base in BASES]
 """Kinds of scenes, of which the first few have nearly every key."""
@@ -264,7 +270,7 @@ def refused(folder: Path, text: str | bytes) -> str:
 def test_the_bases_are_right_and_have_every_key_of_the_schema(folder: Path) -> None:
     known = {key for table in BASES.values() for key in paths(table)} | {"sweep"}
     assert {first(key) for key in declared(Scene)} == {first(key) for key in known if value_is_declared(key)}
-    assert len(ALL) > 400
+    assert len(mutations()) > 400
     for table in BASES.values():
         with contextlib.chdir(folder):
             read(table)
@@ -290,7 +296,7 @@ def value_is_declared(key: str) -> bool:
 @pytest.mark.large
 @pytest.mark.parametrize("base", FEW_AND_ALL)
 def test_one_thing_wrong_is_refused_at_its_line(folder: Path, base: str) -> None:
-    for mutation in [each for each in ALL if each.base == base]:
+    for mutation in [each for each in mutations() if each.base == base]:
         text = tomli_w.dumps(mutation.table)
         output = refused(folder, text)
         lines = [line for line in output.splitlines() if f"scene.toml:{line_of(text, mutation.key)}: " in line]
@@ -298,7 +304,7 @@ def test_one_thing_wrong_is_refused_at_its_line(folder: Path, base: str) -> None
 
 
 def test_one_thing_wrong_is_refused_at_its_key(folder: Path) -> None:
-    for mutation in [each for each in ALL if each.base == "every section"]:
+    for mutation in [each for each in mutations() if each.base == "every section"]:
         with contextlib.chdir(folder), pytest.raises(SceneError) as refused:
             read(mutation.table)
         assert any(mutation.key in str(fault) for fault in refused.value.faults), str(mutation)

@@ -70,7 +70,8 @@ def test_contacts_of_a_paraboloid_are_those_of_its_table(law: dict[str, Any]) ->
     np.testing.assert_allclose(one.contact_radius, other.contact_radius, rtol=1e-12)
 
 
-@settings(deadline=None, max_examples=40)
+# Uncompiled a table takes a tenth of a second.
+@settings(deadline=None, max_examples=12 if numba.config.DISABLE_JIT else 40)
 @given(seed=st.integers(0, 10**6), points=st.integers(1, 20), unit=st.sampled_from(UNITS))
 def test_the_profile_rises_through_its_points(seed: int, points: int, unit: float) -> None:
     shape = table(seed, unit, points)

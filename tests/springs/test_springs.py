@@ -49,7 +49,7 @@ def slope(errors: list[float]) -> float:
     return -float(np.polyfit(np.log(COUNTS), np.log(errors), 1)[0])
 
 
-@pytest.mark.few(12)
+@pytest.mark.few(6)
 @pytest.mark.parametrize("control", ["indentation", "force"])
 @pytest.mark.parametrize("adhesive", [False, True], ids=["elastic", "jkr"])
 @pytest.mark.parametrize(("shape", "effective_modulus", "work", "order"), CASES, ids=NAMES)
@@ -160,7 +160,7 @@ FUNCTIONS: list[tuple[Callable[[np.ndarray], np.ndarray], rm.PowerSeries]] = [
 ]
 
 
-@pytest.mark.few(4)
+@pytest.mark.few(2)
 @pytest.mark.parametrize("work", [0.0, 0.05], ids=["elastic", "jkr"])
 @pytest.mark.parametrize(("f", "shape"), FUNCTIONS, ids=lambda value: getattr(value, "name", ""))
 def test_a_function_is_as_good_as_a_shape(

@@ -44,7 +44,7 @@ def sphere(indentation: float, radius: float) -> Ensemble:
 
 def rough(length: float = 1e-6) -> Ensemble:
     rng = np.random.default_rng(5)
-    heights = np.sort(rng.normal(0.0, length, 30))[::-1]
+    heights = -np.sort(-rng.normal(0.0, length, 30))  # from the highest, in an array like all others
     return Ensemble("paraboloid", heights, {"radius": rng.uniform(20.0, 80.0, 30) * length})
 
 

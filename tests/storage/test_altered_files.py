@@ -214,6 +214,7 @@ def test_a_loop_that_ends_without_tension_is_read(
     assert not told.stderr
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize(
     ("change", "says"),
     [

@@ -317,6 +317,7 @@ def test_the_unit_of_length_does_not_matter(work: float, unit: float) -> None:
         np.testing.assert_allclose(sunk, unit * u, rtol=1e-13)
 
 
+@large_where_compiled
 @settings(deadline=None, max_examples=40)
 @given(
     log_flat=st.floats(-9.0, 0.0),
@@ -345,7 +346,7 @@ def largest_on_a_grid(shape: Shape, nu: float, **given: Any) -> float:
 
 
 @large_where_compiled
-@pytest.mark.few(2)
+@pytest.mark.few(1)
 @pytest.mark.parametrize("nu", [-0.9, 0.0, 0.5])
 @pytest.mark.parametrize("work", [0.0, WORK, 1.0])
 def test_the_largest_shear_is_the_largest_of_all_depths(nu: float, work: float) -> None:

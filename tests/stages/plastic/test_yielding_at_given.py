@@ -4,6 +4,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from forms import large
 from scenes import scene
 
 import roughmdr as rm
@@ -27,9 +28,16 @@ def told(result: Any, given: str, values: Any, branch: str = "loading") -> dict[
     return {str(name): there[name].to_numpy() for name in there if str(name).endswith("_model_error")}
 
 
+@pytest.fixture(scope="module")
+def hard_and_elastic() -> tuple[Any, Any]:
+    return law(1e15), law(None)
+
+
 @pytest.mark.parametrize("given", ["force", "separation", "contact_fraction"])
-def test_where_nothing_yields_errors_are_those_of_elastic_contacts(given: str) -> None:
-    hard, elastic = law(1e15), law(None)
+def test_where_nothing_yields_errors_are_those_of_elastic_contacts(
+    hard_and_elastic: tuple[Any, Any], given: str
+) -> None:
+    hard, elastic = hard_and_elastic
     values = {"force": 0.3 * float(elastic.force.max()), "separation": 1.5e-6, "contact_fraction": 0.01}[given]
     found, expected = (told(each, given, values) for each in (hard, elastic))
     assert found.keys() == expected.keys()
@@ -47,7 +55,7 @@ def test_the_error_of_the_force_by_interaction_falls_with_the_softness() -> None
     np.testing.assert_allclose(soft.interaction_error, share * (1.4 * np.sqrt(fraction) + fraction), rtol=0.1)
 
 
-@pytest.mark.parametrize("model", MODELS)
+@pytest.mark.parametrize("model", [large(each) if each == "kogut-etsion" else each for each in MODELS])
 def test_errors_of_areas_are_told_on_loading_alone(model: str) -> None:
     load = {"force": {"start": "0.1 mN", "stop": "2 mN", "steps": 5}, "unload": True}
     result = law(1e5, model, path=load)
