@@ -73,7 +73,7 @@ class Step(NamedTuple):
     area_error: float = 0.0
     """About that of the area of a grid at given force [m2]."""
     spread_area: float = 0.0
-    """``spread_area`` of the contacts [m2]."""
+    """``spread_area`` of the contacts under a curved body [m2]; 0 under a flat."""
     nominal_radius: float = 0.0
     """Effective radius of the load of the contacts that push about the axis of a curved body; 0 under a flat."""
 
@@ -101,7 +101,10 @@ def total(
         near = crowding(
             at, radius, np.where(touching, load, 0.0), placed.sides, emerging, placed.interaction.order, punch
         )
-    at, area = placed.at[: load.size][touching], radius[touching] ** 2
+    area, about = radius[touching] ** 2, (0.0, 0.0)
+    if placed.axis is not None:
+        at = placed.at[: load.size][touching]
+        about = spread_area(at, area), _load_radius(at - placed.axis, load[touching])
     return Step(
         placed.force_unit * math.fsum(load[touching].tolist()),
         length * math.fsum(radius[touching].tolist()),
@@ -109,8 +112,8 @@ def total(
         contacts=int(np.count_nonzero(touching)),
         error=placed.force_unit * sizes,
         overlap=Overlap(int(overlapping.sum()), share, near),
-        spread_area=length * length * spread_area(at, area),
-        nominal_radius=0.0 if placed.axis is None else length * _load_radius(at - placed.axis, load[touching]),
+        spread_area=length * length * about[0],
+        nominal_radius=length * about[1],
     )
 
 

@@ -42,24 +42,26 @@ def of_state(state: State) -> Tension:
 
 
 class LargestTension:
-    """The largest tension while the flat rises; on pieces of the way it is looked for only where it may be."""
+    """The largest tension while the flat rises, looked for within those pieces of the way alone that may have it.
+
+    Within a piece it is taken to be above that at both ends by no more than these differ.
+    """
 
     def __init__(self) -> None:
-        self.best = Tension()
-        """The largest at the ends of pieces so far."""
+        self._at_ends = Tension()  # the largest at the ends of pieces so far
         self._pieces = list[tuple[float, Piece]]()
 
     def pass_over(self, piece: Piece) -> None:
         """Add a piece on which the flat rises."""
         first, last = of_state(piece.begin), of_state(piece.end)
-        self.best = min(self.best, first, last)
+        self._at_ends = min(self._at_ends, first, last)
         if first.contacts:
             least = min(first.force, last.force) - abs(last.force - first.force)
-            self._pieces = [each for each in [*self._pieces, (least, piece)] if each[0] < self.best.force]
+            self._pieces = [each for each in [*self._pieces, (least, piece)] if each[0] < self._at_ends.force]
 
     def found(self) -> Tension:
-        """Return it."""
-        best = self.best
+        """Return the largest of all pieces so far."""
+        best = self._at_ends
         for least, piece in sorted(self._pieces, key=lambda each: each[0]):
             if least < best.force:
                 best = min(best, largest_within(piece))
